@@ -51,7 +51,7 @@ pub(crate) use packed::PackedPlan;
 pub(crate) use results::{NewIncumbent, ResultRow};
 pub(crate) use rows::{Counts, JobRow, JobState, ProgressRow, Work};
 pub(crate) use segments::SegmentRow;
-pub(crate) use spacecraft::SpacecraftRow;
+pub(crate) use spacecraft::{SpacecraftName, SpacecraftRow};
 
 use database::Database;
 use database::postgres::{COPYING, DEFAULT_CONNECTIONS, PostgresDatabase};

@@ -169,6 +169,14 @@ fn clients_do_not_see_each_others_jobs_and_spacecraft() {
     let get = |key: &str| service.send(&request("GET", "/v1/spacecraft/some", key));
     get(&mine).expect(200);
     get(&other).expect_problem(404, "not_found");
+    let names = |key: &str| {
+        let listed = service.send(&request("GET", "/v1/spacecraft", key));
+        let listed = listed.expect(200).json();
+        let names = listed["spacecraft"].as_array().expect("a list").iter();
+        names.map(|one| one["name"].clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(names(&mine), ["some"]);
+    assert!(names(&other).is_empty());
     let mut scenario = small();
     scenario["spacecraft"] = json!({"ref": "some"});
     let submission = request("POST", "/v1/plans", &other).json(&scenario);

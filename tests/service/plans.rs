@@ -218,6 +218,41 @@ fn a_list_is_filtered_and_paged() {
 }
 
 #[test]
+fn a_list_is_searched_by_parts_of_names_and_identifiers() {
+    let service = Service::start();
+    let names = ["Comet 67P 50% lit", "comet_tail", "cometatail", "moon"];
+    let ids = names.map(|name| {
+        let mut scenario = small();
+        scenario["name"] = json!(name);
+        service.submit(&scenario)
+    });
+    let unnamed = {
+        let mut scenario = small();
+        scenario.as_object_mut().expect("an object").remove("name");
+        service.submit(&scenario)
+    };
+    let found = |search: &str| -> Vec<String> {
+        let page = service.get(&format!("/v1/plans?search={search}"));
+        let page = page.expect(200).json();
+        let plans = page["plans"].as_array().expect("a list").iter();
+        let id = |job: &Value| job["id"].as_str().expect("text").to_owned();
+        plans.map(id).collect()
+    };
+    let of = |numbers: &[usize]| -> Vec<String> {
+        let newest_first = numbers.iter().rev();
+        newest_first.map(|&number| ids[number].clone()).collect()
+    };
+    assert_eq!(found("COMET"), of(&[0, 1, 2]));
+    assert_eq!(found("et_t"), of(&[1]));
+    assert_eq!(found("50%25"), of(&[0]));
+    assert_eq!(found("nowhere"), of(&[]));
+    assert_eq!(found(&ids[3][..36].to_uppercase()), of(&[3]));
+    assert_eq!(found(&unnamed), [unnamed.clone()]);
+    let both = service.get("/v1/plans?search=comet&name=comet_tail");
+    assert_eq!(both.expect(200).json()["plans"][0]["id"], json!(ids[1]));
+}
+
+#[test]
 fn stop_answers_with_the_best_plan_so_far() {
     let service = Service::start_with(&ALONE);
     let id = service.submit(&large());

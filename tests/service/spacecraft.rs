@@ -42,6 +42,47 @@ fn a_spacecraft_is_stored_in_versions_and_used_by_name() {
 }
 
 #[test]
+fn spacecraft_are_listed_by_name_page_by_page() {
+    let service = Service::start();
+    let mut document = small()["spacecraft"].clone();
+    for name in ["sat-c", "sat-a", "Sat_b"] {
+        let put = Request::new("PUT", &format!("/v1/spacecraft/{name}")).json(&document);
+        service.send(&put).expect(201);
+    }
+    document["max_body_rate_rad_s"] = json!([0.01, 0.01, 0.01]);
+    let put = Request::new("PUT", "/v1/spacecraft/sat-a").json(&document);
+    let newest = service.send(&put).expect(200).json();
+
+    let whole = service.get("/v1/spacecraft").expect(200).json();
+    let listed = whole["spacecraft"].as_array().expect("a list");
+    assert_eq!((listed.len(), &whole["next_cursor"]), (3, &Value::Null));
+    let named = |name: &str| listed.iter().find(|one| one["name"] == name);
+    let one = named("sat-a").expect("listed once");
+    assert_eq!(
+        (&one["version"], &one["created_at"]),
+        (&json!(2), &newest["created_at"])
+    );
+    assert_eq!(named("Sat_b").expect("listed")["version"], 1);
+
+    let mut paged = Vec::new();
+    let mut path = "/v1/spacecraft?limit=1".to_owned();
+    loop {
+        let page = service.get(&path).expect(200).json();
+        paged.extend(page["spacecraft"].as_array().expect("a list").clone());
+        let Some(cursor) = page["next_cursor"].as_str() else {
+            break;
+        };
+        path = format!("/v1/spacecraft?limit=1&cursor={cursor}");
+    }
+    assert_eq!(&paged, listed);
+    for query in ["limit=0", "limit=201", "name=sat"] {
+        service
+            .get(&format!("/v1/spacecraft?{query}"))
+            .expect_problem(400, "invalid_parameter");
+    }
+}
+
+#[test]
 fn wrong_spacecraft_and_unknown_names_are_refused() {
     let service = Service::start();
     let put = |name: &str, document: &Value| {

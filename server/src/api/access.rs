@@ -67,6 +67,7 @@ fn rule(method: &Method, route: &str) -> Option<Rule> {
         "/v1/legs/query" | "/v1/verify" | "/v1/slews" => Some(Rule::Needs(Scope::Write)),
         _ if route.starts_with("/v1/studies/") => Some(Rule::Needs(Scope::Write)),
         _ if JOBS.iter().any(|jobs| route.starts_with(jobs))
+            || route == "/v1/spacecraft"
             || route.starts_with("/v1/spacecraft/") =>
         {
             Some(Rule::Needs(if reads { Scope::Read } else { Scope::Write }))

@@ -71,6 +71,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(studies::envelopes::handler))
         .routes(routes!(studies::comparison::handler))
         .routes(routes!(studies::flight::handler))
+        .routes(routes!(spacecraft::list::handler))
         .routes(routes!(spacecraft::put::handler, spacecraft::get::handler))
         .routes(routes!(verify::handler))
         .routes(routes!(page::handler))
@@ -83,7 +84,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(operations::metrics::handler))
 }
 
-/// Compression of large answers, where `Accept-Encoding` asks for it.
+/// Compression of large answers and of the page, where `Accept-Encoding` asks for it.
 fn gzip() -> CompressionLayer {
     CompressionLayer::new().quality(CompressionLevel::Fastest)
 }
@@ -93,7 +94,9 @@ pub(crate) fn router(app: App) -> Router {
     let (router, description) = routes().split_for_parts();
     let docs = SwaggerUi::new("/docs")
         .config(utoipa_swagger_ui::Config::from("/openapi.yaml").default_model_rendering("model"));
-    let router = router.merge(docs).route(page::FILES, get(page::file));
+    let router = router
+        .merge(docs)
+        .route(page::FILES, get(page::file).layer(gzip()));
     #[cfg(feature = "faults")]
     let router = router.layer(from_fn(observe::fault));
     router

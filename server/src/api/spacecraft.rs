@@ -1,6 +1,7 @@
 //! Spacecraft stored by name.
 
 pub(super) mod get;
+pub(super) mod list;
 pub(super) mod put;
 
 use crate::base::clock::rfc3339;

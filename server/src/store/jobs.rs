@@ -70,8 +70,19 @@ pub(crate) struct Listing {
     pub(crate) state: Option<JobState>,
     /// Only jobs of this name.
     pub(crate) name: Option<String>,
+    /// Only jobs with this in their name or identifier, in letters of either case.
+    pub(crate) search: Option<String>,
     /// Maximum number of rows.
     pub(crate) limit: i64,
+}
+
+/// The pattern of texts that contain a text.
+fn containing(text: &str) -> String {
+    let literal = text
+        .replace('!', "!!")
+        .replace('%', "!%")
+        .replace('_', "!_");
+    format!("%{literal}%")
 }
 
 impl Store {
@@ -206,12 +217,14 @@ impl Store {
 
     /// Jobs, the newest first.
     pub(crate) async fn jobs(&self, listing: &Listing) -> Result<Vec<JobRow>, StoreError> {
+        let search = listing.search.as_deref().map(containing);
         sql(concat!(
             "SELECT ",
             job_columns!(),
             " FROM jobs WHERE ($1 IS NULL OR sequence < $1) AND ($2 IS NULL OR state = $2) \
              AND ($3 IS NULL OR name = $3) AND ($4 IS NULL OR client = $4) \
-             AND work = $6 ORDER BY sequence DESC LIMIT $5"
+             AND work = $6 AND ($7 IS NULL OR lower(name) LIKE lower($7) ESCAPE '!' \
+             OR id LIKE lower($7) ESCAPE '!') ORDER BY sequence DESC LIMIT $5"
         ))
         .bind(listing.before)
         .bind(listing.state.map(|state| state.into_str()))
@@ -219,6 +232,7 @@ impl Store {
         .bind(&listing.client)
         .bind(listing.limit)
         .bind(listing.work.into_str())
+        .bind(&search)
         .fetch_all(&self.database)
         .await
     }

@@ -22,6 +22,19 @@ row! {
     }
 }
 
+row! {
+    /// The newest version of a stored spacecraft, without its document.
+    #[derive(Debug, Clone)]
+    pub(crate) struct SpacecraftName {
+        /// Stored name.
+        pub(crate) name: String,
+        /// The newest version.
+        pub(crate) version: i64,
+        /// When it was stored.
+        pub(crate) created_us: i64,
+    }
+}
+
 impl Store {
     /// Stores a spacecraft as the newest version, unless the newest has the same document. Versions
     /// older than the newest [`KEPT_VERSIONS`] are deleted.
@@ -81,6 +94,29 @@ impl Store {
         .bind(name)
         .bind(version)
         .fetch_optional(&self.database)
+        .await
+    }
+
+    /// Stored spacecraft in the order of their names, which begin with `prefix`, or have no space
+    /// without one.
+    pub(crate) async fn spacecraft_names(
+        &self,
+        prefix: Option<&str>,
+        after: Option<&str>,
+        limit: i64,
+    ) -> Result<Vec<SpacecraftName>, StoreError> {
+        let letters = prefix.map_or(0, |prefix| prefix.chars().count());
+        sql(
+            "SELECT name, version, created_us FROM spacecraft AS newest \
+             WHERE version = (SELECT max(version) FROM spacecraft AS one WHERE one.name = newest.name) \
+             AND (substr(name, 1, CAST($2 AS INTEGER)) = $1 OR ($1 IS NULL AND name NOT LIKE '% %')) \
+             AND ($3 IS NULL OR name > $3) ORDER BY name LIMIT $4",
+        )
+        .bind(prefix)
+        .bind(i64::try_from(letters).unwrap_or(i64::MAX))
+        .bind(after)
+        .bind(limit)
+        .fetch_all(&self.database)
         .await
     }
 }

@@ -53,10 +53,19 @@ export function group(name, ...nodes) {
   return el("fieldset", {}, el("legend", {}, name), el("div", { class: "fields" }, nodes));
 }
 
-/** A choice that is not a value of its own, as {node, show}; `chosen` is called with what is chosen. */
+/**
+ * A choice that is not a value of its own, as {node, offer, show}; `chosen` is called with what is chosen,
+ * `offer` takes other options.
+ */
 export function choice(label, options, chosen) {
   const id = `field-${(number += 1)}`;
   const input = el("select", { id, onchange: () => chosen(input.value) }, options.map(([value, title]) => el("option", { value }, title)));
   const node = el("div", { class: "field wide" }, el("label", { for: id }, label), input);
-  return { node, show: (value) => (input.value = value) };
+  const offer = (list) => {
+    const key = JSON.stringify(list);
+    if (input.dataset.offered === key) return;
+    input.dataset.offered = key;
+    input.replaceChildren(...list.map(([value, title]) => el("option", { value }, title)));
+  };
+  return { node, offer, show: (value) => (input.value = value) };
 }

@@ -9,19 +9,12 @@ import { numberText } from "./cells.js";
 import { choice, field, group } from "./field.js";
 import { put, rawAt } from "./json-edit.js";
 import { Selection } from "./selection.js";
+import { offered, StoredSpacecraft } from "./stored.js";
 import { BORESIGHTS, WHEELS } from "./tables.js";
 import { ARRANGEMENTS, USUAL_ELEVATION_DEG, wheelsText } from "./wheel-presets.js";
 
 const PATH = ["spacecraft"];
-const NAMES_KEY = "slewplan-spacecraft";
-const NAMES_LIST = "spacecraft-names";
 const degrees = (cell) => (numberText(cell) ? `${fixed((Number(numberText(cell)) * 180) / Math.PI, 2)} °/s` : "");
-
-/** Names of stored spacecraft that have been used in this browser. */
-const names = {
-  get: () => JSON.parse(localStorage.getItem(NAMES_KEY) ?? "[]"),
-  add: (name) => localStorage.setItem(NAMES_KEY, JSON.stringify([name, ...names.get().filter((one) => one !== name)].slice(0, 30))),
-};
 
 /** The section of the spacecraft. */
 export function spacecraftForm(desk) {
@@ -31,36 +24,49 @@ export function spacecraftForm(desk) {
     desk.draft.edit(put(desk.draft.text, PATH, text), "source of the spacecraft");
   });
   const status = el("p", { class: "quiet stored-status", role: "status" });
-  const list = el("datalist", { id: NAMES_LIST });
+  const stored = new StoredSpacecraft(desk.signal);
   const outcome = el("div", { "aria-live": "polite" });
 
-  const reference = el("div", { class: "fields" },
-    field(desk, { title: "Name", type: "text" }, () => (isStored() ? [...PATH, "ref"] : undefined)),
+  const picked = choice("Stored spacecraft", [], (value) => {
+    // Another spacecraft has versions of its own.
+    desk.draft.edit(put(desk.draft.text, PATH, JSON.stringify({ ref: value })), "stored spacecraft");
+  });
+  const reference = el("div", { class: "fields" }, picked.node,
     field(desk, { title: "Version", type: "number", placeholder: "newest" }, () => (isStored() ? [...PATH, "version"] : undefined)));
-  reference.querySelector("input").setAttribute("list", NAMES_LIST);
-  const body = el("div", { class: "written-out" }, inertia(desk), limits(desk), wheels(desk), boresights(desk), keep(desk, outcome));
+  const body = el("div", { class: "written-out" }, inertia(desk), limits(desk), wheels(desk), boresights(desk), keep(desk, stored, outcome));
 
   const render = () => {
     if (!desk.draft.isReadable) return;
-    const stored = isStored();
-    source.show(stored ? "stored" : "written");
-    body.hidden = stored;
-    reference.hidden = status.hidden = !stored;
+    const isRef = isStored();
+    source.show(isRef ? "stored" : "written");
+    body.hidden = isRef;
+    reference.hidden = status.hidden = !isRef;
     const { state, version, spacecraft } = desk.stored;
-    if (state === "known") names.add(desk.document.spacecraft.ref);
-    status.textContent = !stored ? "" : {
-      none: "Give the name under which it was stored.",
+    if (isRef) {
+      stored.look();
+      picked.offer(optionsOf(stored.list, desk.document.spacecraft.ref));
+      picked.show(desk.document.spacecraft.ref);
+    }
+    status.textContent = !isRef ? "" : {
+      none: stored.list?.length === 0 ? "No spacecraft is stored yet: write one here and store it." : "Choose the one to plan for.",
       asked: "Looking for it …",
       missing: "The service has no spacecraft of this name and version.",
       known: `Version ${version}: ${spacecraft?.wheels?.length} wheels, ${spacecraft?.boresights?.length ?? 0} boresights. `
         + "“Written here” takes a copy of it that can be changed.",
     }[state];
-    list.replaceChildren(...names.get().map((value) => el("option", { value })));
   };
   desk.draft.listen(render, desk.signal);
   desk.listen(render);
+  stored.listen(render);
   render();
-  return section("Spacecraft", { class: "desk-part" }, el("div", { class: "fields" }, source.node), list, reference, status, body, outcome);
+  return section("Spacecraft", { class: "desk-part" }, el("div", { class: "fields" }, source.node), reference, status, body, outcome);
+}
+
+/** What can be picked; a name that is not stored stays what it is. */
+function optionsOf(list, name) {
+  const known = (list ?? []).map((one) => [one.name, offered(one)]);
+  const own = typeof name === "string" && name && !known.some(([value]) => value === name) ? [[name, name]] : [];
+  return [["", list === null ? "looking for them …" : "choose one"], ...own, ...known];
 }
 
 /** The inertia: the entries off the diagonal are there twice. */
@@ -128,7 +134,7 @@ function boresights(desk) {
 }
 
 /** Stores the spacecraft under a name. */
-function keep(desk, outcome) {
+function keep(desk, stored, outcome) {
   const name = el("input", { id: "store-name", type: "text", autocomplete: "off", spellcheck: "false" });
   const store = el("button", { type: "button", onclick: async () => {
     store.disabled = true;
@@ -137,7 +143,7 @@ function keep(desk, outcome) {
       const answer = await request(`/v1/spacecraft/${encodeURIComponent(name.value.trim())}`,
         { method: "PUT", headers: { "Content-Type": "application/json" }, body, signal: desk.signal });
       const { version } = await answer.json();
-      names.add(name.value.trim());
+      stored.again();
       outcome.replaceChildren(el("p", { class: "success" }, `Stored as version ${version} of ${name.value.trim()}.`));
     } catch (error) {
       if (!desk.signal.aborted) outcome.replaceChildren(failure(error));

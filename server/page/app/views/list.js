@@ -8,6 +8,8 @@ import { VIOLATED } from "../plan/keep-out.js";
 import { chip, isFinal, states } from "../state.js";
 
 const PAGE = 25;
+/** After the last letter of a search. */
+const PAUSE_MS = 250;
 const RENEW_MS = 2000;
 const RENEW_IDLE_MS = 10000;
 
@@ -18,6 +20,7 @@ const COLUMNS = [
   { title: "Time", number: true },
   { title: "Gap", number: true },
   { title: "Submitted", number: true },
+  { title: "Solved in", number: true },
 ];
 
 /** The view at "#/". */
@@ -26,7 +29,7 @@ export function list({ signal }) {
   const trail = [null];
   let next = null;
 
-  const name = el("input", { id: "filter-name", type: "search", placeholder: "exact name", autocomplete: "off" });
+  const search = el("input", { id: "filter-search", type: "search", placeholder: "part of a name", autocomplete: "off" });
   const state = el(
     "select",
     { id: "filter-state" },
@@ -36,26 +39,33 @@ export function list({ signal }) {
   const newer = el("button", { type: "button", onclick: () => { trail.pop(); renew(); } }, "Newer");
   const older = el("button", { type: "button", onclick: () => { trail.push(next); renew(); } }, "Older");
   const narrow = () => { trail.length = 1; renew(); };
-  name.addEventListener("change", narrow);
+  let typed;
+  search.addEventListener("input", () => {
+    clearTimeout(typed);
+    typed = setTimeout(narrow, PAUSE_MS);
+  });
   state.addEventListener("change", narrow);
 
-  let timer;
+  let [timer, asked] = [0, 0];
   async function renew() {
     clearTimeout(timer);
+    const own = (asked += 1);
     const query = new URLSearchParams({ limit: PAGE });
     if (trail.at(-1)) query.set("cursor", trail.at(-1));
-    if (name.value.trim()) query.set("name", name.value.trim());
+    if (search.value.trim()) query.set("search", search.value.trim());
     if (state.value) query.set("state", state.value);
     let pause = RENEW_IDLE_MS;
     try {
       const page = await read(`/v1/plans?${query}`, signal);
+      // What was asked for later is what is shown.
+      if (own !== asked) return;
       next = page.next_cursor;
       const focused = place.contains(document.activeElement) ? document.activeElement.getAttribute("href") : null;
-      place.replaceChildren(page.plans.length ? rows(page.plans) : empty(name.value || state.value));
+      place.replaceChildren(page.plans.length ? rows(page.plans) : empty(search.value || state.value));
       if (focused) place.querySelector(`a[href="${CSS.escape(focused)}"]`)?.focus();
       if (page.plans.some((job) => !isFinal(job.state))) pause = RENEW_MS;
     } catch (error) {
-      if (signal.aborted) return;
+      if (signal.aborted || own !== asked) return;
       place.replaceChildren(failure(error));
       // Without a key the service would ask for one again and again.
       if (error.status === 401) return;
@@ -66,7 +76,7 @@ export function list({ signal }) {
     timer = setTimeout(renew, pause);
   }
   const pager = el("div", { class: "actions pager", hidden: true }, newer, older);
-  signal.addEventListener("abort", () => clearTimeout(timer));
+  signal.addEventListener("abort", () => [timer, typed].forEach(clearTimeout));
   renew();
 
   return el(
@@ -81,8 +91,8 @@ export function list({ signal }) {
     el(
       "div",
       { class: "filters" },
-      el("label", { for: "filter-name" }, "Name"),
-      name,
+      el("label", { for: "filter-search" }, "Search"),
+      search,
       el("label", { for: "filter-state" }, "State"),
       state,
     ),
@@ -101,6 +111,7 @@ function rows(plans) {
     seconds(job.incumbent_s),
     percent(job.relative_gap),
     el("time", { datetime: job.submitted_at }, moment(job.submitted_at)),
+    seconds(job.solved_s, 1),
   ]));
 }
 

@@ -27,13 +27,22 @@ pub(in crate::api) struct PageQuery {
     pub(in crate::api) limit: Option<u16>,
 }
 
+/// Which names of jobs a list has; all by default.
+#[derive(Debug, Default)]
+pub(in crate::api) struct NameFilter {
+    /// Only jobs of exactly this name.
+    pub(in crate::api) name: Option<String>,
+    /// Only jobs with this in their name or identifier.
+    pub(in crate::api) search: Option<String>,
+}
+
 /// The jobs of a page, the newest first, and where the next page begins.
 pub(in crate::api) async fn page(
     app: &App,
     caller: &Caller,
     work: Work,
     query: PageQuery,
-    name: Option<String>,
+    named: NameFilter,
 ) -> Result<(Vec<JobRow>, Option<String>), ApiError> {
     let wrong = |detail: String| ApiError::new(ErrorCode::InvalidParameter, detail);
     let limit = query.limit.unwrap_or(DEFAULT_LIMIT);
@@ -46,7 +55,8 @@ pub(in crate::api) async fn page(
         client: caller.client().map(str::to_owned),
         before: extract::cursor(query.cursor.as_deref())?,
         state: state.transpose().map_err(wrong)?,
-        name,
+        name: named.name,
+        search: named.search,
         limit: i64::from(limit) + 1,
     };
     let mut rows = app.store().jobs(&listing).await?;

@@ -5,7 +5,7 @@ use super::super::access::Caller;
 use super::super::describe::{ParameterErrors, ServerErrors};
 use super::super::error::ApiError;
 use super::super::extract::Parameters;
-use super::super::jobs::list::{self, PageQuery};
+use super::super::jobs::list::{self, NameFilter, PageQuery};
 use crate::documents::leg_table_jobs::{LegTableJobDocument, LegTableJobListDocument};
 use crate::store::Work;
 use axum::Json;
@@ -25,7 +25,8 @@ pub(in crate::api) async fn handler(
     caller: Caller,
     Parameters(query): Parameters<PageQuery>,
 ) -> Result<Json<LegTableJobListDocument>, ApiError> {
-    let (rows, next_cursor) = list::page(&app, &caller, Work::LegTable, query, None).await?;
+    let (rows, next_cursor) =
+        list::page(&app, &caller, Work::LegTable, query, NameFilter::default()).await?;
     let leg_tables = rows.iter().map(LegTableJobDocument::new);
     Ok(Json(LegTableJobListDocument {
         leg_tables: leg_tables.collect::<Result<_, _>>()?,

@@ -5,7 +5,7 @@ use super::super::access::Caller;
 use super::super::describe::{ParameterErrors, ServerErrors};
 use super::super::error::ApiError;
 use super::super::extract::Parameters;
-use super::super::jobs::list::{self, PageQuery};
+use super::super::jobs::list::{self, NameFilter, PageQuery};
 use crate::documents::jobs::{JobDocument, JobListDocument};
 use crate::store::{JobState, Work};
 use axum::Json;
@@ -23,6 +23,9 @@ pub(in crate::api) struct JobListQuery {
     state: Option<String>,
     /// Only jobs of scenarios with exactly this name.
     name: Option<String>,
+    /// Only jobs with this in the name of their scenario or in their identifier, in letters of
+    /// either case.
+    search: Option<String>,
     /// Where the page begins: `next_cursor` of the page before.
     #[param(pattern = "^[0-9]{1,9}$")]
     cursor: Option<String>,
@@ -50,7 +53,11 @@ pub(in crate::api) async fn handler(
         cursor: query.cursor,
         limit: query.limit,
     };
-    let (rows, next_cursor) = list::page(&app, &caller, Work::Plan, page, query.name).await?;
+    let named = NameFilter {
+        name: query.name,
+        search: query.search,
+    };
+    let (rows, next_cursor) = list::page(&app, &caller, Work::Plan, page, named).await?;
     let plans = rows.iter().map(JobDocument::new);
     Ok(Json(JobListDocument {
         plans: plans.collect::<Result<_, _>>()?,

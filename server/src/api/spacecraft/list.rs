@@ -1,0 +1,102 @@
+//! `GET /v1/spacecraft`: the stored spacecraft, page by page.
+
+use super::super::App;
+use super::super::access::Caller;
+use super::super::describe::{ParameterErrors, ServerErrors};
+use super::super::error::{ApiError, ErrorCode};
+use super::super::extract::Parameters;
+use crate::base::clock::rfc3339;
+use crate::store::SpacecraftName;
+use axum::Json;
+use axum::extract::State;
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+
+const DEFAULT_LIMIT: u16 = 50;
+const MAX_LIMIT: u16 = 200;
+
+/// Page of the list.
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub(in crate::api) struct SpacecraftListQuery {
+    /// Where the page begins: `next_cursor` of the page before.
+    #[param(pattern = "^[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}$")]
+    cursor: Option<String>,
+    /// Maximum number of spacecraft of the page.
+    #[param(minimum = 1, maximum = 200, default = 50)]
+    limit: Option<u16>,
+}
+
+/// A stored spacecraft in a list.
+#[derive(Debug, Serialize, ToSchema)]
+struct ListedSpacecraft {
+    /// Name by which scenarios refer to it: `{"ref": name}`.
+    name: String,
+    /// The newest version.
+    version: i64,
+    /// When that version was stored.
+    #[schema(format = "date-time")]
+    created_at: String,
+}
+
+impl From<&SpacecraftName> for ListedSpacecraft {
+    fn from(row: &SpacecraftName) -> Self {
+        Self {
+            name: own_part(&row.name).to_owned(),
+            version: row.version,
+            created_at: rfc3339(row.created_us),
+        }
+    }
+}
+
+/// A page of stored spacecraft.
+#[derive(Debug, Serialize, ToSchema)]
+pub(in crate::api) struct SpacecraftList {
+    /// In the order of their names.
+    spacecraft: Vec<ListedSpacecraft>,
+    /// The `cursor` of the next page; none after the last one.
+    next_cursor: Option<String>,
+}
+
+/// List the stored spacecraft by name
+#[utoipa::path(
+    get, path = "/v1/spacecraft", tag = "spacecraft", operation_id = "list_spacecraft",
+    params(SpacecraftListQuery),
+    responses(
+        (status = 200, description = "A page of spacecraft", body = SpacecraftList),
+        ParameterErrors, ServerErrors,
+    ),
+)]
+pub(in crate::api) async fn handler(
+    State(app): State<App>,
+    caller: Caller,
+    Parameters(query): Parameters<SpacecraftListQuery>,
+) -> Result<Json<SpacecraftList>, ApiError> {
+    let limit = query.limit.unwrap_or(DEFAULT_LIMIT);
+    if !(1..=MAX_LIMIT).contains(&limit) {
+        return Err(ApiError::new(
+            ErrorCode::InvalidParameter,
+            format!("limit is from 1 to {MAX_LIMIT}"),
+        ));
+    }
+    let prefix = caller.client().map(|_| caller.own(""));
+    let after = query.cursor.map(|name| caller.own(&name));
+    let more_than = i64::from(limit) + 1;
+    let mut rows = app
+        .store()
+        .spacecraft_names(prefix.as_deref(), after.as_deref(), more_than)
+        .await?;
+    let more = rows.len() > usize::from(limit);
+    rows.truncate(limit.into());
+    let last = rows.last().filter(|_| more);
+    Ok(Json(SpacecraftList {
+        next_cursor: last.map(|row| own_part(&row.name).to_owned()),
+        spacecraft: rows.iter().map(ListedSpacecraft::from).collect(),
+    }))
+}
+
+/// The name without the client before it.
+fn own_part(stored: &str) -> &str {
+    stored.rsplit_once(' ').map_or(stored, |(_, name)| name)
+}

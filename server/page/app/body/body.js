@@ -78,7 +78,7 @@ export function body(flight, cursor, toggle, signal) {
   turned.reset();
 
   const head = el("div", { class: "tools" }, el("label", { for: "body-frame" }, "Seen from"), choice, turned.buttons,
-    pictureButtons("body", flight.scenario.name));
+    pictureButtons("body", () => flight.scenario.name));
   return section("Body", { head, class: "spacecraft" }, canvas, legend(flight, parts), data);
 }
 

@@ -139,7 +139,7 @@ export function skyView(desk) {
 
   const head = el("div", { class: "tools" }, el("label", { for: "sky-axis" }, "Boresight"), axisChoice,
     turned.buttons,
-    pictureButtons("sky"));
+    pictureButtons("sky", () => desk.document.name));
   renew();
   return section("Sky", { head, class: "desk-part desk-sky" }, picture, status, legend, details);
 }

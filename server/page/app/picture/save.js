@@ -8,12 +8,15 @@ const SHARP = 2;
 /** Pixels that browsers have room for in one picture. */
 const MOST_PIXELS = 100_000_000;
 
-/** Two buttons that save the section in which they stand; `name` names the drawing, `of` what is drawn. */
-export function pictureButtons(name, of) {
-  const stem = [of, name].filter(Boolean).join("-").replaceAll(/[^\w.-]+/g, "-").toLowerCase();
+/** Two buttons that save the section in which they stand; `name` names the drawing, `of` tells what is drawn. */
+export function pictureButtons(name, of = () => null) {
   const save = (kind, make) => el("button", {
     type: "button", class: "small", "aria-label": `Save ${name} as ${kind}`,
-    onclick: async ({ currentTarget }) => offer(await make(taken(currentTarget.closest("section"), [of, name].filter(Boolean).join(", "))), `${stem}.${kind.toLowerCase()}`),
+    onclick: async ({ currentTarget }) => {
+      const names = [of(), name].filter(Boolean);
+      const file = await make(taken(currentTarget.closest("section"), names.join(", ")));
+      offer(file, `${names.join("-").replaceAll(/[^\w.-]+/g, "-").toLowerCase()}.${kind.toLowerCase()}`);
+    },
   }, kind);
   return el("span", { class: "saves" }, save("SVG", svgFile), save("PNG", pngFile));
 }

@@ -42,7 +42,7 @@ export function legs(plan, flight) {
       fixed(leg.certified_lower_bound_s),
     ];
   });
-  return section("Legs", { class: "wide", head: el("div", { class: "tools" }, pictureButtons("legs", flight.scenario.name)) },
+  return section("Legs", { class: "wide", head: el("div", { class: "tools" }, pictureButtons("legs", () => flight.scenario.name)) },
     table("Legs in flying order, with the same slew about its eigenaxis", columns, rows),
     el("p", { class: "quiet" }, "The light bar is the same slew from rest to rest about its eigenaxis. ",
       "Rates left free at the targets count into what is saved."));

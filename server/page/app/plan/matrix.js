@@ -17,7 +17,7 @@ export function matrix(plan, scenario, signal) {
   const places = placesOf(plan, scenario);
   const body = el("div", {}, el("p", { class: "quiet" }, "Looking up …"));
   const compute = el("button", { type: "button", class: "small", hidden: true, onclick: () => load("compute") }, "Compute missing");
-  const tools = el("div", { class: "tools" }, compute, pictureButtons("leg times", scenario.name));
+  const tools = el("div", { class: "tools" }, compute, pictureButtons("leg times", () => scenario.name));
   const node = section("Leg times, rest to rest", { head: tools, class: "wide" }, body);
   // The limit of time is one of the search; queries have their own.
   const { spacecraft, start, options: { time_limit_s: _, ...options } = {} } = scenario;

@@ -5,8 +5,8 @@ import { fixed } from "../format.js";
 import { letters } from "./palette.js";
 
 const KINDS = ["slew", "settle", "dwell", "cone", "limit"];
-/** What stands in the bars of violations. */
-const ALARMS = { cone: "in", limit: "over" };
+/** What stands in the bars of violations; those of several wheels may cover each other. */
+const ALARMS = { cone: "in", limit: "" };
 /** What a character takes in a bar, px; a bar without room for its text has none. */
 const CHARACTER = 8;
 
@@ -42,7 +42,7 @@ export function lanes(flight, look) {
       node.style.width = `max(2px, ${end - begin}% - 1px)`;
       node.hidden = end < 0 || begin > 100;
       const text = node.firstChild;
-      text.hidden = ((end - begin) * width) / 100 < CHARACTER * letters() * (text.textContent.length + 1);
+      text.hidden = text.textContent === "" || ((end - begin) * width) / 100 < CHARACTER * letters() * (text.textContent.length + 1);
     }
     show(now);
   };

@@ -41,7 +41,7 @@ export function timelines(flight, cursor, signal, more = []) {
   const tools = el("div", { class: "tools" }, moment,
     button("−", "Show a longer time", () => zoom(ZOOM_STEP)), button("+", "Show a shorter time", () => zoom(1 / ZOOM_STEP)),
     button("All", "All of the flight", () => look(0, flight.total)),
-    pictureButtons("timelines", flight.scenario.name));
+    pictureButtons("timelines", () => flight.scenario.name));
   const lane = flight.phases.length ? lanes(flight, look) : null;
 
   const show = (time) => {

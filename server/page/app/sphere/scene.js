@@ -32,8 +32,8 @@ export function draw(picture, size, { view, zoom }, content) {
     ...content.ends.map((end) => ring(end, at(end.direction))),
     ...leaders,
     ...marks(content.stops, { at, view, larger }),
-    dot(content.now, at),
     ...labels,
+    dot(content.now, at),
   );
 }
 

@@ -66,7 +66,7 @@ export function sphere(flight, cursor, signal, { title = "Sky", id = "body-axis"
   let data = directions(flight, axis);
   const head = el("div", { class: "tools" }, el("label", { for: id }, "Axis"), choice,
     flight.stops.length ? el("label", { class: "named-stops" }, isNamed, "Names") : null, turned.buttons,
-    pictureButtons(title.toLowerCase(), flight.scenario.name));
+    pictureButtons(title.toLowerCase(), () => flight.scenario.name));
   return section(title, { head, class: "sky" }, picture, legend(flight), data);
 }
 

@@ -11,7 +11,7 @@ import { generic } from "./generic.js";
 const DEGREES = 180 / Math.PI;
 /** Parts of a straight piece of a way at whose ends its share is computed: another facet may come between. */
 const PARTS = 16;
-const KINDS = [["full", "the wheels in any way"], ["pseudo_inverse", "by the pseudo-inverse"]];
+const KINDS = [["full", "full envelope"], ["pseudo_inverse", "pseudo-inverse envelope"]];
 /** The slews of a turn that are compared: list, member, value, name. */
 const SLEWS = [
   ["eigenaxis", "limit", "pseudo_inverse", "eigenaxis, pseudo-inverse"], ["eigenaxis", "limit", "full", "eigenaxis, full envelope"],
@@ -70,13 +70,13 @@ function drawn(arrays, slews, signal) {
     const solid = envelopeSolid({ name: `${title} envelope`, full: array.full, inner: array.pseudo_inverse, ways }, signal);
     const head = el("div", { class: "tools" }, solid.buttons, pictureButtons(`${title.toLowerCase()} envelope`));
     return section(`${title}, ${array.unit}`, { head, class: "envelope" }, key.cloneNode(true), solid.node,
-      el("p", { class: "quiet" }, "Grey is what the wheels can do in any way, orange what they do by the pseudo-inverse. Axes are the body's."));
+      el("p", { class: "quiet" }, "Grey is the full envelope, all that the wheels can do together; orange what the pseudo-inverse reaches. Axes are the body's."));
   });
   if (!slews.length) return [el("div", { class: "cards" }, solids)];
   const charts = arrays.flatMap(({ title, array, isJoined }) => KINDS.map(([kind, words]) => {
     const { values, curves } = merged(slews.map((slew) => sharesOf(wayOf(slew, isJoined), array[kind], isJoined)));
     return curveChart({
-      title: `${title}, share of what is possible ${words}`, unit: "", linear: true, from: 0,
+      title: `${title}, share of the ${words}`, unit: "", linear: true, from: 0,
       against: { title: "time", unit: "s", values },
       curves: slews.map(({ name, colour }, index) => ({ name, colour, values: curves[index], shown: "line" })),
       limit: { name: "all of it", value: 1 },
@@ -84,7 +84,7 @@ function drawn(arrays, slews, signal) {
   }));
   return [el("div", { class: "cards" }, solids),
     section("Shares over time", { class: "wide", head: el("div", { class: "tools" }, pictureButtons("shares over time")) },
-      el("div", { class: "curves" }, charts.map(({ node }) => node)),
+      el("div", { class: "curves wider-curves" }, charts.map(({ node }) => node)),
       disclosure("Shares as a table", () => shares(arrays, slews)))];
 }
 
@@ -102,7 +102,7 @@ function sharesOf(way, envelope, isJoined) {
 }
 
 function shares(arrays, slews) {
-  const columns = [{ title: "Slew", head: true }, { title: "Quantity" }, ...KINDS.map(([, words]) => ({ title: `most, ${words}`, number: true }))];
+  const columns = [{ title: "Slew", head: true }, { title: "Quantity" }, ...KINDS.map(([, words]) => ({ title: `most of the ${words}`, number: true }))];
   const most = (slew, { array, isJoined }, kind) => sharesOf(wayOf(slew, isJoined), array[kind], isJoined).reduce((found, [, share]) => Math.max(found, share), 0);
   return table("Largest shares of the envelopes", columns, slews.flatMap((slew) => arrays.map((one) =>
     [slew.name, one.title.toLowerCase(), ...KINDS.map(([kind]) => fixed(most(slew, one, kind), 3))])));

@@ -1,7 +1,6 @@
 // One flight in closed loop: errors over time, the motion that comes of it, and where wheels meet limits.
 
 import { Cursor } from "../cursor.js";
-import { verdict } from "../checks.js";
 import { el, section, table } from "../dom.js";
 import { item } from "../failure.js";
 import { motion } from "../flight.js";
@@ -122,7 +121,8 @@ function errorGroups({ samples, peak }) {
 function arrivals({ passages, end, within_tolerance: isWithin }) {
   const columns = [{ title: "Place", head: true }, { title: "Time, s", number: true }, { title: "Attitude error", number: true }, { title: "Rate error", number: true }];
   const row = (name, time, error) => [name, fixed(time), angle(error.attitude_rad), `${angle(error.rate_rad_s)}/s`];
-  return section("Errors at the arrivals", { head: verdict(isWithin), class: "card" },
+  const word = el("span", { class: `chip ${isWithin ? "good" : "bad"}` }, isWithin ? "Within the tolerance" : "Not within the tolerance");
+  return section("Errors at the arrivals", { head: word, class: "card" },
     table("Errors at every arrival and at the end", columns, [...passages.map((one) => row(one.target, one.time_s, one.error)), row("end", null, end)]));
 }
 

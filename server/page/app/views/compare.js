@@ -62,7 +62,7 @@ export function compare({ id, other, signal }) {
   });
   return el("div", { class: "view" },
     el("div", { class: "title" }, el("h1", {}, "Compare plans")),
-    el("div", { class: "filters" }, fields.map((field, index) => [el("label", { for: field.id }, SIDES[index]), field])),
+    el("div", { class: "filters" }, fields.map((field, index) => el("span", { class: "filter" }, el("label", { for: field.id }, SIDES[index]), field))),
     said, place);
 }
 

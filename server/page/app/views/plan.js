@@ -56,7 +56,7 @@ class PlanPage {
     this.#id = id;
     this.#signal = signal;
     this.#progress = convergence(signal);
-    const saves = el("div", { class: "tools" }, pictureButtons("search"));
+    const saves = el("div", { class: "tools" }, pictureButtons("search", () => this.#job.name));
     this.#search = section("Search", { class: "card search", head: saves }, this.#progress.node);
     this.#compare.href = `#/compare/${id}`;
     this.#again.href = `#/new?from=${id}`;

@@ -1,16 +1,21 @@
-// Every view at two widths, in both themes and enlarged: nothing cut off, nothing that axe-core finds.
+// Every view at three widths, in both themes and enlarged: nothing cut off, nothing that axe-core finds.
 
 import { check, findings, fixture, openPage, picture, planned } from "./harness.mjs";
 
 /** Enlarged to 200 %: half as many pixels of the page, each twice as large. */
 const SIZES = {
   desktop: { viewport: { width: 1280, height: 900 } },
+  tablet: { viewport: { width: 820, height: 1180 }, hasTouch: true },
   phone: { viewport: { width: 390, height: 844 }, hasTouch: true },
   zoomed: { viewport: { width: 640, height: 450 }, deviceScaleFactor: 2 },
 };
 
 /** Views that are complete once they have been sent, and by which button. */
-const SENT = { slew: "Solve", trade: "Solve", study: "Run" };
+const SENT = {
+  slew: "Solve", trade: "Solve", study: "Run", "study-envelopes": "Run", "study-comparison": "Run", "study-flight": "Run",
+};
+/** How many plots studies without a flight have. */
+const PLOTS = { study: 3, "study-envelopes": 4, "study-comparison": 7 };
 
 export async function looks({ browser, service, must }) {
   const ids = {};
@@ -22,6 +27,7 @@ export async function looks({ browser, service, must }) {
     "keep-out": `#/plans/${ids["two-targets"]}`, pyramid: `#/plans/${ids["pyramid-momentum-bias"]}`,
     slew: "#/slew?example=quarter-turn", trade: "#/slew?example=olrac-four-wheels",
     study: "#/studies?example=study-authority",
+    ...Object.fromEntries(["envelopes", "comparison", "flight"].map((name) => [`study-${name}`, `#/studies/${name}?example=study-${name}`])),
     compare: `#/compare/${ids["olivares-a"]}/${ids["two-targets"]}`,
   };
   for (const [size, context] of Object.entries(SIZES)) {
@@ -56,7 +62,7 @@ async function ready(page, view) {
   if (view in SENT) await send(page, SENT[view]);
   else if (view === "compare") await page.locator(".sphere .stop").nth(7).waitFor();
   else await Promise.all([".sphere .stop", ".search .uplot", ".matrix"].map((part) => page.locator(part).first().waitFor()));
-  if (view === "study") return page.locator(".curves .uplot").nth(2).waitFor();
+  if (view in PLOTS) return page.locator(".curves .uplot").nth(PLOTS[view] - 1).waitFor();
   await page.getByLabel("Moment").evaluate((slider) => {
     slider.value = String(0.4 * Number(slider.max));
     slider.dispatchEvent(new Event("input"));

@@ -1,5 +1,6 @@
 // The leg times between two hundred targets: a picture of which a cell is chosen.
 
+import { readFileSync } from "node:fs";
 import { check, eventually, findings, fixture, openPage, picture, planned } from "./harness.mjs";
 
 function twoHundred() {
@@ -61,6 +62,19 @@ export async function matrix({ browser, service, must }) {
     check((await said.textContent()).endsWith(`${shown} s`), shown);
     const found = await findings(page);
     check(found.length === 0, found.join("\n"));
+  });
+  await must("the matrix is saved as a picture", async () => {
+    const sizes = [];
+    for (const kind of ["SVG", "PNG"]) {
+      const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: `Save leg times as ${kind}` }).click()]);
+      const bytes = readFileSync(await download.path());
+      const begins = kind === "SVG" ? "<?xml" : "\u0089PNG";
+      check(bytes.toString("latin1").startsWith(begins), download.suggestedFilename());
+      // The cells are pixels in it, their frames are lines.
+      if (kind === "SVG") check(/<image [^>]*href="data:image\/png/.test(bytes.toString("utf8")), "no cells");
+      sizes.push(`${download.suggestedFilename()} ${bytes.length}`);
+    }
+    return sizes.join(", ");
   });
   // What keeps the page busy is told and not judged: it depends on what else the machine does.
   await must("a pointer moves across it", async () => {

@@ -14,11 +14,12 @@ import { matrix } from "./matrix.mjs";
 import { modules } from "./modules.mjs";
 import { order } from "./order.mjs";
 import { pictures } from "./pictures.mjs";
+import { planner } from "./planner.mjs";
 import { studies } from "./studies.mjs";
 import { units } from "./units.mjs";
 import { violations } from "./violations.mjs";
 
-const PARTS = { modules, hostile, journeys, desk, "desk-modules": deskModules, answers, details, body, units, compare, matrix, order, pictures, studies, violations, looks };
+const PARTS = { modules, hostile, journeys, desk, "desk-modules": deskModules, answers, details, body, units, compare, matrix, order, pictures, planner, studies, violations, looks };
 
 const asked = process.argv.slice(2);
 const unknown = asked.filter((name) => !(name in PARTS));

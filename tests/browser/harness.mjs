@@ -66,8 +66,14 @@ export async function planned(service, scenario) {
   const answer = await fetch(`${service.address}/v1/plans`, {
     method: "POST", headers: { "Content-Type": "application/json", Prefer: "wait=60" }, body: JSON.stringify(scenario),
   });
-  check(answer.status === 200, `a plan answered ${answer.status}`);
-  return answer.headers.get("location").split("/").at(-1);
+  check(answer.ok, `a plan answered ${answer.status}`);
+  const id = answer.headers.get("location").split("/").at(-1);
+  // A machine with other work to do takes longer than the service waits.
+  for (let state = "running"; ["queued", "running"].includes(state);) {
+    ({ state } = await (await fetch(`${service.address}/v1/plans/${id}`)).json());
+    if (["queued", "running"].includes(state)) await new Promise((resolve) => { setTimeout(resolve, 500); });
+  }
+  return id;
 }
 
 /** A browser, with further options of its command line. */

@@ -247,7 +247,7 @@ fn a_list_is_searched_by_parts_of_names_and_identifiers() {
     assert_eq!(found("50%25"), of(&[0]));
     assert_eq!(found("nowhere"), of(&[]));
     assert_eq!(found(&ids[3][..36].to_uppercase()), of(&[3]));
-    assert_eq!(found(&unnamed), [unnamed.clone()]);
+    assert_eq!(found(&unnamed), std::slice::from_ref(&unnamed));
     let both = service.get("/v1/plans?search=comet&name=comet_tail");
     assert_eq!(both.expect(200).json()["plans"][0]["id"], json!(ids[1]));
 }

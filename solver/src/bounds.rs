@@ -3,5 +3,6 @@
 pub(crate) mod certified;
 pub mod certify;
 pub mod kinematic;
+pub mod polytope;
 
 pub use certified::VERSION;

@@ -81,7 +81,28 @@ fn plans_of_experiment_a_are_confirmed() {
             assert_eq!(claimed[field], flown[field], "{field}");
         }
         assert_eq!(claimed["reason"], Value::Null);
+        strongest_bounds_lie_between(&found, &solved.plan);
     }
+}
+
+/// Checks that the strongest bounds are no smaller than the claims, and no larger than what is flown.
+fn strongest_bounds_lie_between(found: &Value, plan: &Value) {
+    let lies_between = |claim: &Value, flown: &Value| {
+        let strongest = claim["strongest_lower_bound_s"].as_f64().expect("a bound");
+        let claimed = claim["certified_lower_bound_s"].as_f64().expect("a bound");
+        let flown = flown.as_f64().expect("a number");
+        assert!(
+            (claimed..flown).contains(&strongest),
+            "{claim} of {flown} s"
+        );
+        strongest / flown
+    };
+    let legs = found["legs"].as_array().expect("a list").iter();
+    for (claim, leg) in legs.zip(plan["legs"].as_array().expect("a list")) {
+        lies_between(claim, &leg["duration_s"]);
+    }
+    let share = lies_between(&found["tour"], &plan["total_time_s"]);
+    assert!(share > 0.935, "{share} of the tour is proved");
 }
 
 #[test]

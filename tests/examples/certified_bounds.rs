@@ -1,19 +1,32 @@
-//! Prints how close certified bounds come to the durations of slews from rest to rest, by class:
-//! the published table, the same with unequal ramps, and the random suite.
+//! Prints how close proved bounds come to durations, by class: legs from rest to rest of the published table,
+//! of the same with unequal ramps, of the random suite, and tours of the published experiments.
+//!
+//! Of every class first the bounds that steer the search, by boxes of rates, then the strongest that are
+//! proved.
 
 use slewplan_solver::model::spec::ScenarioSpec;
 use slewplan_solver::tour::legs::LegKind;
-use slewplan_solver::tour::planner::{LegRow, Shard, leg_table};
-use slewplan_tests::experiment_c_spec;
-use slewplan_tests::solving::{on_threads, scenario_of};
+use slewplan_solver::tour::planner::{LegRow, Shard, StrongestBounds, leg_table, strongest_bounds};
+use slewplan_tests::solving::{on_threads, plan_of, scenario_of};
 use slewplan_tests::suite::{LEGS_PER_SPACECRAFT, SPACECRAFT, leg};
+use slewplan_tests::{experiment_a_spec, experiment_b_spec, experiment_c_spec};
+use std::time::Instant;
 
 /// Torques of the published wheels for unequal ramps, N m: ramp times in the ratios 2 : 1 : 5.
 const UNEQUAL: [f64; 3] = [0.005, 0.0101, 0.002];
 
+/// Shares of the duration of a leg that are proved.
+struct Share {
+    boxed: Option<f64>,
+    strongest: Option<f64>,
+}
+
 fn main() {
     let mut published = experiment_c_spec();
     published.end = None;
+    for target in &mut published.targets {
+        target.zero_rate_axes = None;
+    }
     let pairs = pairs(&published);
     assert_eq!(pairs.len(), 171);
     report("published, equal ramps", &pairs);
@@ -34,16 +47,78 @@ fn main() {
     {
         let crafts = (0..SPACECRAFT).filter(|craft| craft / 4 == group as u64);
         let legs = crafts.flat_map(|craft| (0..LEGS_PER_SPACECRAFT).map(move |n| leg(craft, n)));
-        let rows: Vec<_> = legs.flat_map(|spec| rows(&spec, 2)).collect();
-        report(name, &rows);
+        let shares: Vec<_> = legs
+            .flat_map(|spec| shares(&spec, &rows(&spec, 2)))
+            .collect();
+        report(name, &shares);
+    }
+    for (name, spec) in [
+        ("A", experiment_a_spec()),
+        ("B", experiment_b_spec()),
+        ("C", experiment_c_spec()),
+    ] {
+        tour(name, &spec);
     }
 }
 
+/// The bounds on the tour of an experiment, and on the legs of its plan.
+fn tour(name: &str, spec: &ScenarioSpec) {
+    let plan = plan_of(spec);
+    let legs: Vec<_> = plan
+        .legs
+        .iter()
+        .map(|leg| (leg.from.clone(), leg.to.clone()))
+        .collect();
+    let begin = Instant::now();
+    let StrongestBounds {
+        legs: strongest,
+        tour_s,
+    } = on_threads(2, |run| strongest_bounds(&scenario_of(spec), &legs, run));
+    let time = begin.elapsed().as_secs_f64();
+    let share = |bound: Option<f64>| bound.map_or(f64::NAN, |bound| bound / plan.total_time_s);
+    println!(
+        "experiment {name}: tour {:.4}, strongest {:.4}, in {time:.3} s",
+        share(plan.certified_lower_bound_s),
+        share(tour_s)
+    );
+    let bounds = plan
+        .legs
+        .iter()
+        .zip(strongest)
+        .map(|(leg, strongest)| Share {
+            boxed: leg
+                .certified_lower_bound_s
+                .map(|bound| bound / leg.duration_s),
+            strongest: strongest.map(|bound| bound / leg.duration_s),
+        });
+    report(
+        &format!("its {} legs", plan.legs.len()),
+        &bounds.collect::<Vec<_>>(),
+    );
+}
+
 /// One direction of every leg between the places of a scenario.
-fn pairs(spec: &ScenarioSpec) -> Vec<LegRow> {
+fn pairs(spec: &ScenarioSpec) -> Vec<Share> {
     let mut rows = rows(spec, 1);
     rows.retain(|row| row.from == "start" || (row.to != "start" && row.from < row.to));
-    rows
+    shares(spec, &rows)
+}
+
+/// The shares of the durations of legs that are proved.
+fn shares(spec: &ScenarioSpec, rows: &[LegRow]) -> Vec<Share> {
+    let names: Vec<_> = rows
+        .iter()
+        .map(|row| (row.from.clone(), row.to.clone()))
+        .collect();
+    let bounds = on_threads(2, |run| strongest_bounds(&scenario_of(spec), &names, run));
+    let share = |bound: Option<f64>, row: &LegRow| Some(bound? / row.duration_s?);
+    rows.iter()
+        .zip(bounds.legs)
+        .map(|(row, strongest)| Share {
+            boxed: share(row.certified_lower_bound_s, row),
+            strongest: share(strongest, row),
+        })
+        .collect()
 }
 
 /// The first of so many parts of the table.
@@ -59,16 +134,23 @@ fn rows(spec: &ScenarioSpec, parts: usize) -> Vec<LegRow> {
     .0
 }
 
-fn report(name: &str, rows: &[LegRow]) {
-    let bounds = rows
-        .iter()
-        .filter_map(|row| row.certified_lower_bound_s.zip(row.duration_s));
-    let mut shares: Vec<f64> = bounds.map(|(bound, duration)| bound / duration).collect();
-    shares.sort_by(f64::total_cmp);
-    print!("{name}: {} legs, {} bounded", rows.len(), shares.len());
-    if let (Some(least), Some(most)) = (shares.first(), shares.last()) {
-        let median = shares[shares.len() / 2];
-        print!("; bound / duration {least:.4} at least, median {median:.4}, {most:.6} at most");
-    }
+fn report(name: &str, shares: &[Share]) {
+    print!("{name}: {} legs", shares.len());
+    print_range("boxes", shares.iter().filter_map(|share| share.boxed));
+    print_range(
+        "strongest",
+        shares.iter().filter_map(|share| share.strongest),
+    );
     println!();
+}
+
+fn print_range(kind: &str, shares: impl Iterator<Item = f64>) {
+    let mut known: Vec<f64> = shares.collect();
+    known.sort_by(f64::total_cmp);
+    if let (Some(least), Some(most)) = (known.first(), known.last()) {
+        let (count, median) = (known.len(), known[known.len() / 2]);
+        print!(
+            "; {kind}: {count} bounded, {least:.4} at least, median {median:.4}, {most:.6} at most"
+        );
+    }
 }

@@ -7,7 +7,7 @@ use slewplan_solver::model::spec::{AttitudeEquivalence, AttitudeSpec, ScenarioSp
 use slewplan_solver::run::progress::{Observer, Progress, Stage};
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::tour::legs::LegKind;
-use slewplan_solver::tour::planner::{self, LegRow, Run, Shard, leg_table};
+use slewplan_solver::tour::planner::{self, LegRow, Run, Shard, leg_table, strongest_bounds};
 use slewplan_tests::ordinary::conditioned;
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{on_threads, plan_of, planned, pool, scenario_of};
@@ -49,6 +49,24 @@ fn assert_legs_keep_their_bounds(plan: &Plan) {
     );
 }
 
+/// Checks the strongest bounds that are known of the legs of a plan and of all tours.
+fn assert_strongest_bounds_hold(spec: &ScenarioSpec, plan: &Plan) {
+    let legs = plan.legs.iter();
+    let names: Vec<_> = legs.map(|leg| (leg.from.clone(), leg.to.clone())).collect();
+    let scenario = scenario_of(spec);
+    let strongest = on_threads(2, |run| strongest_bounds(&scenario, &names, run));
+    for (leg, bound) in plan.legs.iter().zip(strongest.legs) {
+        assert!(bound >= leg.certified_lower_bound_s, "{bound:?} of {leg:?}");
+        let bound = bound.unwrap_or(0.0);
+        assert!(
+            bound <= leg.duration_s * (1.0 + ROUNDING),
+            "{bound} of {leg:?}"
+        );
+    }
+    let tour = strongest.tour_s.unwrap_or(0.0);
+    assert!(tour <= plan.total_time_s, "{tour} of {}", plan.total_time_s);
+}
+
 #[test]
 fn an_all_axes_plan_of_experiment_c_has_a_certified_gap_below_one_and_a_half_percent() {
     let mut spec = experiment_c_spec();
@@ -65,8 +83,10 @@ fn an_all_axes_plan_of_experiment_c_has_a_certified_gap_below_one_and_a_half_per
 
 #[test]
 fn tours_with_free_components_and_signed_quaternions_keep_their_bounds() {
-    let plan = plan_of(&experiment_a_spec());
+    let spec = experiment_a_spec();
+    let plan = plan_of(&spec);
     assert_legs_keep_their_bounds(&plan);
+    assert_strongest_bounds_hold(&spec, &plan);
     let bound = plan.certified_lower_bound_s.expect("a bound of the tour");
     assert!(bound > 0.85 * plan.total_time_s, "{bound}");
     assert_eq!(plan.lower_bound_kind, LowerBoundKind::NlpRelaxation);
@@ -172,6 +192,7 @@ fn random_legs_are_not_faster_than_their_bounds() {
             ..ScenarioSpec::default()
         };
         let plan = plan_of(&spec);
+        assert_strongest_bounds_hold(&spec, &plan);
         // Without limits of wheel speeds and body rates there is no box of rates.
         let body = &spec.spacecraft;
         let limited = body
@@ -201,8 +222,12 @@ fn random_legs_are_not_faster_than_their_bounds() {
 fn plans_of_ordinary_spacecraft_are_not_faster_than_their_bounds() {
     for seed in 0..60 {
         let targets = 1 + usize::try_from(seed % 3).expect("few");
-        let plan = plan_of(&conditioned(4000 + seed, targets, 3.0));
+        let spec = conditioned(4000 + seed, targets, 3.0);
+        let plan = plan_of(&spec);
         assert_legs_keep_their_bounds(&plan);
+        if seed % 4 == 0 {
+            assert_strongest_bounds_hold(&spec, &plan);
+        }
     }
 }
 

@@ -46,6 +46,12 @@ pub fn experiment_a_spec() -> ScenarioSpec {
     experiment_spec("experiment-a", 6)
 }
 
+/// The published experiment B: targets a to l.
+#[must_use]
+pub fn experiment_b_spec() -> ScenarioSpec {
+    experiment_spec("experiment-b", 12)
+}
+
 /// The published experiment C: targets a to r.
 #[must_use]
 pub fn experiment_c_spec() -> ScenarioSpec {

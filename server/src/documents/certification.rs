@@ -25,6 +25,8 @@ struct LegDocument<'a> {
 #[derive(Debug, Serialize)]
 struct ClaimDocument {
     certified_lower_bound_s: Option<Number>,
+    /// The largest lower bound that is known to hold, s; proved once where it exceeds the claim.
+    strongest_lower_bound_s: Option<Number>,
     verdict: &'static str,
     reason: Option<String>,
 }
@@ -32,25 +34,27 @@ struct ClaimDocument {
 impl<'a> CertificationDocument<'a> {
     /// Claims with what became of them.
     pub(crate) fn new(claims: &'a PlanCertificate, checked: &CheckedCertificate) -> Self {
-        let legs = claims.legs.iter().zip(&checked.legs);
+        let strongest = &checked.strongest;
+        let legs = claims.legs.iter().zip(&checked.legs).zip(&strongest.legs);
         Self {
             confirmed: checked.confirmed(),
             legs: legs
-                .map(|(leg, verdict)| LegDocument {
+                .map(|((leg, verdict), strongest)| LegDocument {
                     from: &leg.from,
                     to: &leg.to,
-                    claim: ClaimDocument::new(leg.lower_bound_s, verdict),
+                    claim: ClaimDocument::new(leg.lower_bound_s, *strongest, verdict),
                 })
                 .collect(),
-            tour: ClaimDocument::new(claims.lower_bound_s, &checked.tour),
+            tour: ClaimDocument::new(claims.lower_bound_s, strongest.tour_s, &checked.tour),
         }
     }
 }
 
 impl ClaimDocument {
-    fn new(bound: Option<f64>, verdict: &Verdict) -> Self {
+    fn new(bound: Option<f64>, strongest: Option<f64>, verdict: &Verdict) -> Self {
         Self {
             certified_lower_bound_s: bound.map(Number),
+            strongest_lower_bound_s: strongest.map(Number),
             verdict: name(verdict),
             reason: reason(verdict),
         }

@@ -48,11 +48,13 @@
 //! rotation, which may be the shorter way round.
 
 mod momentum;
+mod norms;
 mod rolls;
 
 use crate::bounds::kinematic::certificate::Certificate;
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use crate::bounds::kinematic::ramps::SlewBound;
+use crate::bounds::kinematic::rate_envelope::RateEnvelope;
 use crate::bounds::kinematic::strongest::{Alternatives, GivenAway};
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::facets::{Facets, FrameKey};
@@ -62,6 +64,7 @@ use crate::model::tolerances::{ATTITUDE_TOLERANCE, LIMIT_TOLERANCE, RATE_TOLERAN
 use crate::model::waypoint::Waypoint;
 use momentum::MomentumBounds;
 use nalgebra::{Matrix3, Vector3};
+use norms::Norms;
 use rolls::{given_away, least_over_rolls};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -107,6 +110,7 @@ pub(crate) struct CertifiedBounds {
     /// Norm of the body rate that no motion exceeds, rad/s; infinite without limits of speed.
     largest_rate: f64,
     prepared: Mutex<HashMap<(Frame, EndKey), Arc<PreparedFrame>>>,
+    norms: Mutex<HashMap<EndKey, Arc<Norms>>>,
 }
 
 /// A frame by its number among those that every leg tries, or by its facets.
@@ -177,6 +181,7 @@ impl CertifiedBounds {
             frames,
             momentum,
             prepared: Mutex::default(),
+            norms: Mutex::default(),
         }
     }
 
@@ -239,6 +244,35 @@ impl CertifiedBounds {
         Some((frames[strongest.alternative].axes, certificate))
     }
 
+    /// The largest bound, s, that norms prove on slews between two waypoints, if it exceeds the one that
+    /// [`Self::leg`] gives. Takes milliseconds. `None` with momentum or a free roll too, for which there are no
+    /// such bounds.
+    pub(crate) fn beyond(&self, from: &Waypoint, to: &Waypoint, known_s: f64) -> Option<f64> {
+        if self.momentum.is_some() || from.roll.is_some() || to.roll.is_some() {
+            return None;
+        }
+        let rates = self.frames.first()?.limits.rates_rad_s;
+        let ends = [from, to].map(|end| rate_limits(end).zip_map(&rates, rounded_up));
+        let turn = from.attitude.turn_to(&to.attitude);
+        let norms = self.norms_for(&ends);
+        norms.beyond(&turn, MISSED_ATTITUDE, known_s, TOLERANCE)
+    }
+
+    fn norms_for(&self, ends: &[Vector3<f64>; 2]) -> Arc<Norms> {
+        let lock = || self.norms.lock().unwrap_or_else(PoisonError::into_inner);
+        let kind = end_key(ends);
+        if let Some(known) = lock().get(&kind) {
+            return Arc::clone(known);
+        }
+        let facets = self.facets.normals();
+        let fresh = Arc::new(Norms::new(&self.spacecraft, &self.frames, &facets, ends));
+        let mut known = lock();
+        if known.len() < MAX_PREPARED {
+            known.insert(kind, Arc::clone(&fresh));
+        }
+        fresh
+    }
+
     /// The frames for a turn and their bounds for end rates within these limits, body axes.
     fn prepared_for(
         &self,
@@ -267,7 +301,7 @@ impl CertifiedBounds {
     }
 
     fn prepared(&self, frame: Frame, ends: &[Vector3<f64>; 2]) -> Arc<PreparedFrame> {
-        let kind: EndKey = ends.map(|end| end.map(f64::to_bits).into());
+        let kind = end_key(ends);
         let lock = || self.prepared.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = lock().get(&(frame, kind)) {
             return Arc::clone(known);
@@ -337,17 +371,34 @@ impl BodyFrame {
 
     /// Bounds on slews with end rates within these limits, body axes.
     fn bound(&self, ends: &[Vector3<f64>; 2]) -> Option<SlewBound> {
-        let ends = EndRates {
+        let bound = SlewBound::new(self.limits, self.end_rates(ends))?;
+        Some(bound.missing(MISSED_ATTITUDE))
+    }
+
+    /// The limits during slews with such end rates; `None` without limits of speed.
+    fn envelope(&self, ends: &[Vector3<f64>; 2]) -> Option<RateEnvelope> {
+        let is_limited = self.limits.rates_rad_s.iter().all(|rate| rate.is_finite());
+        is_limited.then(|| RateEnvelope {
+            limits: self.limits,
+            ends: self.end_rates(ends),
+        })
+    }
+
+    fn end_rates(&self, ends: &[Vector3<f64>; 2]) -> EndRates {
+        EndRates {
             begin_rad_s: self.limits_in_axes(&ends[0]),
             end_rad_s: self.limits_in_axes(&ends[1]),
-        };
-        Some(SlewBound::new(self.limits, ends)?.missing(MISSED_ATTITUDE))
+        }
     }
 
     /// Limits of the components along the frame's axes, from limits along the body axes.
     fn limits_in_axes(&self, limits: &Vector3<f64>) -> Vector3<f64> {
         along(&self.axes, |axis| component(axis, limits))
     }
+}
+
+fn end_key(ends: &[Vector3<f64>; 2]) -> EndKey {
+    ends.map(|end| end.map(f64::to_bits).into())
 }
 
 /// What motions reach whose torques and speeds exceed their limits by the tolerance.

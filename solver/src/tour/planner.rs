@@ -22,6 +22,7 @@ mod proved_legs;
 mod segment_key;
 mod segment_solve;
 mod solved_segments;
+mod strongest;
 mod tables;
 #[cfg(test)]
 mod tests;
@@ -63,6 +64,7 @@ pub use imported::LegCheck;
 pub use leg_time_table::{LegTime, LegTimeTable};
 pub use leg_trials::{GuessNode, LegAnswer, LegTrial, LegTrials};
 pub use memory::memory_estimate;
+pub use strongest::{StrongestBounds, strongest_bounds};
 
 /// What a solve needs from its surroundings.
 #[derive(Clone, Copy)]

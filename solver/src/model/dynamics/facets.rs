@@ -71,6 +71,11 @@ impl Facets {
         }
     }
 
+    /// Unit vectors across the facets, body axes, one of each pair.
+    pub(crate) fn normals(&self) -> Vec<Vector3<f64>> {
+        self.facets.iter().map(|facet| facet.normal).collect()
+    }
+
     /// Frames that are expected to fit a turn by a rotation vector, rad, the most promising first.
     pub(crate) fn frames(&self, turn: &Vector3<f64>) -> Vec<FrameKey> {
         let time = |index: &usize| self.facets[*index].time(turn);

@@ -20,6 +20,7 @@ use super::additive_tours::LegTimes;
 use super::canonical::{CanonicalLeg, missing_from};
 use super::places::Places;
 use super::proved_legs::ProvedLegs;
+use super::strongest::{StrongestBounds, strongest_between};
 use super::tables::CertifiedLeg;
 use super::tour_bound::tour_bound;
 use super::tour_pairs;
@@ -131,6 +132,9 @@ pub struct CheckedCertificate {
     pub legs: Vec<Verdict>,
     /// On the bound on all tours.
     pub tour: Verdict,
+    /// The largest bounds that are known to hold for the same legs and for all tours, those that are
+    /// proved once only included.
+    pub strongest: StrongestBounds,
 }
 
 impl CheckedCertificate {
@@ -175,7 +179,15 @@ pub fn verify_certificate(
         verdict
     });
     let tour = verifier.verify_tour_bound(certificate, &pairs);
-    CheckedCertificate { legs, tour }
+    let names = certificate.legs.iter();
+    let names: Vec<_> = names
+        .map(|leg| (leg.from.clone(), leg.to.clone()))
+        .collect();
+    CheckedCertificate {
+        legs,
+        tour,
+        strongest: strongest_between(&places, &names, run),
+    }
 }
 
 /// Verifies bounds on the legs and tours of a scenario.
@@ -340,6 +352,6 @@ fn has_free_roll(scenario: &Scenario, (from, to): (Place, Place)) -> bool {
 }
 
 /// The canonical leg between two places, each end with its own conditions only.
-fn canonical(places: &Places<'_>, (from, to): (Place, Place)) -> CanonicalLeg {
+pub(super) fn canonical(places: &Places<'_>, (from, to): (Place, Place)) -> CanonicalLeg {
     CanonicalLeg::of(places, &places.waypoint(from), &places.waypoint(to))
 }

@@ -245,10 +245,10 @@ impl CertifiedBounds {
     }
 
     /// The largest bound, s, that norms prove on slews between two waypoints, if it exceeds the one that
-    /// [`Self::leg`] gives. Takes milliseconds. `None` with momentum or a free roll too, for which there are no
-    /// such bounds.
+    /// [`Self::leg`] gives. Takes milliseconds. `None` with a free roll too, for which there are no such bounds,
+    /// and mostly with momentum, for which there is that of a limit of the rate's norm alone.
     pub(crate) fn beyond(&self, from: &Waypoint, to: &Waypoint, known_s: f64) -> Option<f64> {
-        if self.momentum.is_some() || from.roll.is_some() || to.roll.is_some() {
+        if from.roll.is_some() || to.roll.is_some() {
             return None;
         }
         let rates = self.frames.first()?.limits.rates_rad_s;

@@ -32,9 +32,11 @@
 //!
 //!   every axis pays for its own ramp: at rest at both ends and for long slews
 //!   `T >= V_K + sum_i b_i tau_i + (1 - B) min tau_i` with `tau_i = p_i / a_i`.
+//! * Where the norm of the rate is limited, the ball of that norm (`rate_norm`), with momentum too.
 
 mod facet_limits;
 mod norm;
+mod rate_norm;
 
 use super::{BodyFrame, EXCEEDED_LIMITS};
 use crate::bounds::kinematic::ramps::stated;
@@ -76,18 +78,27 @@ const FACETS_OF_A_BOX: usize = 3;
 #[derive(Debug)]
 pub(super) struct Norms {
     norms: Vec<Norm>,
+    /// Limits of the norm of the rate, where there is one.
+    rate_norm: Option<Trapezoid>,
 }
 
 impl Norms {
     /// Norms for end rates within these limits, rad/s, body axes, infinite where they are free; the frames are
     /// those in which boxes are tried for every slew, and `facets` directions across facets of what the wheels
-    /// reach.
+    /// reach. With momentum the ball alone, without a ramp.
     pub(super) fn new(
         dynamics: &Dynamics,
         frames: &[BodyFrame],
         facets: &[Vector3<f64>],
         ends: &[Vector3<f64>; 2],
     ) -> Self {
+        let rate_norm = rate_norm(dynamics, frames, ends);
+        if dynamics.has_momentum() {
+            return Self {
+                norms: Vec::new(),
+                rate_norm,
+            };
+        }
         let mut norms = Vec::new();
         let limits = |f: &Vector3<f64>| Trapezoid {
             most: dynamics.greatest_rate(f) * EXCEEDED_LIMITS,
@@ -113,7 +124,7 @@ impl Norms {
                 norms.extend(Norm::new(&half_spaces, Some((frame.axes, boxed)), limits));
             }
         }
-        Self { norms }
+        Self { norms, rate_norm }
     }
 
     /// The largest bound, s, that some norm proves for a turn whose ends are missed by an angle, rad, each, if it
@@ -134,7 +145,10 @@ impl Norms {
             .filter(|(promise, _)| *promise > 1.0 + SMALL_GAIN)
             .collect();
         promising.sort_by(|one, other| other.0.total_cmp(&one.0));
-        let mut best = known_s;
+        let by_norm = self.rate_norm.map_or(0.0, |limits| {
+            rate_norm::least_duration(vector.norm() - 2.0 * missed, &limits)
+        });
+        let mut best = known_s.max(by_norm);
         for (_, norm) in promising.into_iter().take(MAX_TRIED) {
             best = norm.raised(turn, missed, best, tolerance);
         }
@@ -142,6 +156,28 @@ impl Norms {
             .then(|| stated(best))
             .filter(|bound| *bound > known_s)
     }
+}
+
+/// Limits of the norm of the rate; `None` where it has none of its own.
+fn rate_norm(
+    dynamics: &Dynamics,
+    frames: &[BodyFrame],
+    ends: &[Vector3<f64>; 2],
+) -> Option<Trapezoid> {
+    let most = dynamics.max_rate_norm * EXCEEDED_LIMITS;
+    let accelerations = frames
+        .iter()
+        .map(|frame| frame.limits.accelerations_rad_s2.norm());
+    let slope = if dynamics.has_momentum() {
+        f64::INFINITY
+    } else {
+        accelerations.fold(f64::INFINITY, f64::min)
+    };
+    most.is_finite().then(|| Trapezoid {
+        most,
+        slope,
+        ends: ends.map(|end| end.norm()),
+    })
 }
 
 /// Weights that may pay: of axes whose ramps are longer than the shortest one that counts.

@@ -5,7 +5,7 @@
 pub(super) struct Trapezoid {
     /// Largest rate, rad/s.
     pub(super) most: f64,
-    /// Largest acceleration, rad/s².
+    /// Largest acceleration, rad/s²; infinite where none is known.
     pub(super) slope: f64,
     /// Largest rates at the two ends, rad/s; infinite where the component is free.
     pub(super) ends: [f64; 2],
@@ -32,7 +32,7 @@ impl Trapezoid {
 
     /// Its mean over a duration; its largest value over an infinite one.
     pub(super) fn mean(&self, duration: f64) -> f64 {
-        if duration.is_infinite() {
+        if duration.is_infinite() || self.slope.is_infinite() {
             return self.most;
         }
         let mut times = [0.0, duration, 0.0, 0.0, 0.0];

@@ -29,7 +29,7 @@ export async function violations({ browser, service, must }) {
 
   await must("every failure of the verification is in a banner above everything else", async () => {
     await page.goto(`${service.address}/#/plans/${id}`);
-    await page.locator(".title .chip.waits", { hasText: "Optimal, but limits violated" }).waitFor();
+    await page.locator(".title .chip.bad", { hasText: "Optimal, but limits violated" }).waitFor();
     const banner = page.getByRole("region", { name: "Limits violated" });
     check(await page.locator(".result > *").first().evaluate((node) => node.classList.contains("alarm")), "the banner is not first");
     const texts = await banner.locator("li > span:last-child").allTextContents();

@@ -24,9 +24,10 @@ export function isFinal(state) {
   return state !== "queued" && state !== "running";
 }
 
-/** A state as a coloured word; `doubt` says what is wrong with a plan that is good otherwise. */
-export function chip(state, doubt = null) {
+/** A state as a coloured word; `doubt` says what is wrong with a plan that is good otherwise, in the
+ * colour of `doubtKind`. */
+export function chip(state, doubt = null, doubtKind = "waits") {
   const [kind, text] = STATES[state] ?? ["ended", state];
-  if (kind === "good" && doubt) return el("span", { class: "chip waits" }, `${text}, but ${doubt}`);
+  if (kind === "good" && doubt) return el("span", { class: `chip ${doubtKind}` }, `${text}, but ${doubt}`);
   return el("span", { class: `chip ${kind}` }, text);
 }

@@ -1,7 +1,6 @@
 // The spacecraft that are stored on the service, by their names.
 
 import { read } from "../api.js";
-import { moment } from "../format.js";
 
 const PAGE = 200;
 /** More than these are not offered; their names can be written in the JSON. */
@@ -11,7 +10,7 @@ export class StoredSpacecraft {
   #signal;
   #listeners = [];
   #asked = null;
-  /** {name, version, created_at} of each, in the order of their names; null until they are known. */
+  /** {name, version} of each, in the order of their names; null until they are known. */
   list = null;
 
   constructor(signal) {
@@ -52,4 +51,4 @@ export class StoredSpacecraft {
 }
 
 /** What is offered of one in a list. */
-export const offered = ({ name, version, created_at: created }) => `${name}, version ${version} of ${moment(created)}`;
+export const offered = ({ name, version }) => `${name}, version ${version}`;

@@ -33,7 +33,7 @@ class PlanPage {
   #job = null;
   #scenario = null;
   #begun = 0;
-  #shown = { incumbent: null, final: false, doubt: null, isFlown: false };
+  #shown = { incumbent: null, final: false, doubt: null, isFailed: false, isFlown: false };
   #drawing = new AbortController();
 
   #title = el("h1", {}, "Plan");
@@ -125,9 +125,9 @@ class PlanPage {
   #renew() {
     const { state } = this.#job;
     const ended = isFinal(state);
-    const { doubt } = this.#shown;
+    const { doubt, isFailed } = this.#shown;
     const key = [state, doubt].join();
-    if (this.#state.dataset.shown !== key) this.#state.replaceChildren(chip(state, doubt));
+    if (this.#state.dataset.shown !== key) this.#state.replaceChildren(chip(state, doubt, isFailed ? "bad" : "waits"));
     this.#state.dataset.shown = key;
     this.#notice.node.hidden = ended || !this.#notice.isPossible;
     this.#stop.hidden = state !== "running";
@@ -156,7 +156,10 @@ class PlanPage {
     }
     // An earlier plan that arrives late does not replace the last one.
     if (this.#shown.final) return;
-    this.#shown = { incumbent: found.total_time_s ?? null, final, doubt: doubtOf(checkedPlan(found)), isFlown: Boolean(found.trajectory?.states?.length) };
+    this.#shown = {
+      incumbent: found.total_time_s ?? null, final, doubt: doubtOf(checkedPlan(found)),
+      isFailed: found.verification?.passed === false, isFlown: Boolean(found.trajectory?.states?.length),
+    };
     this.#news.replaceChildren();
     this.#drawing.abort();
     this.#drawing = new AbortController();

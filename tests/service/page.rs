@@ -57,6 +57,26 @@ fn the_page_loads_its_files_from_the_service_and_nothing_inline() {
 }
 
 #[test]
+fn files_of_the_page_are_compressed_for_who_takes_it() {
+    let service = Service::start();
+    let path = files(&service.get("/").expect(200).body)
+        .into_iter()
+        .find(|path| path.ends_with("main.js"))
+        .expect("its script");
+    let plain = service.get(&path).expect(200);
+    assert_eq!(plain.header("content-encoding"), None);
+    let request = Request::new("GET", &path).header("Accept-Encoding", "gzip");
+    let packed = service.send(&request).expect(200);
+    assert_eq!(packed.header("content-encoding"), Some("gzip"));
+    assert_eq!(packed.header("vary"), Some("accept-encoding"));
+    assert!(packed.bytes.len() < plain.bytes.len());
+    assert_eq!(
+        packed.header("cache-control"),
+        plain.header("cache-control")
+    );
+}
+
+#[test]
 fn the_page_is_revalidated_by_its_entity_tag() {
     let service = Service::start();
     let first = service.get("/").expect(200);

@@ -89,7 +89,7 @@ mod interior;
 mod levels;
 pub mod limits;
 pub mod ramps;
-pub(in crate::bounds) mod rate_envelope;
+pub(crate) mod rate_envelope;
 mod search;
 mod sequences;
 mod singular;

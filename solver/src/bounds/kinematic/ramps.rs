@@ -214,7 +214,7 @@ fn certifiable_time(tried: &TriedBox, turn: &Attitude, tolerance: f64) -> f64 {
 }
 
 /// A bound as it is given: less what rounding may have added, and to seven digits.
-pub(in crate::bounds) fn stated(duration_s: f64) -> f64 {
+pub(crate) fn stated(duration_s: f64) -> f64 {
     rounded_down(duration_s * (1.0 - DEFLATION))
 }
 

@@ -12,14 +12,14 @@ const BISECTIONS: usize = 60;
 
 /// Limits with the rates at the two ends.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::bounds) struct RateEnvelope {
-    pub(in crate::bounds) limits: SlewLimits,
-    pub(in crate::bounds) ends: EndRates,
+pub(crate) struct RateEnvelope {
+    pub(crate) limits: SlewLimits,
+    pub(crate) ends: EndRates,
 }
 
 impl RateEnvelope {
     /// `m_i(t; T)`.
-    pub(in crate::bounds) fn available(&self, axis: usize, at: f64, duration: f64) -> f64 {
+    pub(crate) fn available(&self, axis: usize, at: f64, duration: f64) -> f64 {
         let acceleration = self.limits.accelerations_rad_s2[axis];
         let begin = self.ends.begin_rad_s[axis] + acceleration * at;
         let end = self.ends.end_rad_s[axis] + acceleration * (duration - at);
@@ -27,7 +27,7 @@ impl RateEnvelope {
     }
 
     /// Times at which some `m_i` may have a kink, sorted, with both ends.
-    pub(in crate::bounds) fn kinks(&self, duration: f64) -> [f64; 11] {
+    pub(crate) fn kinks(&self, duration: f64) -> [f64; 11] {
         let mut times = [0.0; 11];
         times[1] = duration;
         for i in 0..3 {

@@ -21,7 +21,6 @@ const MAX_LIMIT: u16 = 200;
 #[into_params(parameter_in = Query)]
 pub(in crate::api) struct SpacecraftListQuery {
     /// Where the page begins: `next_cursor` of the page before.
-    #[param(pattern = "^[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}$")]
     cursor: Option<String>,
     /// Maximum number of spacecraft of the page.
     #[param(minimum = 1, maximum = 200, default = 50)]

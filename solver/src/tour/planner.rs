@@ -2,6 +2,7 @@
 
 mod additive_tours;
 mod assemble;
+mod bounds_by_form;
 mod canonical;
 mod certificate;
 mod first_tour;
@@ -49,6 +50,7 @@ use first_tour::{first_order, first_tour};
 use legs::LegSolver;
 use places::{Places, places_of};
 use plan_builder::PlanBuilder;
+use std::collections::{HashMap, HashSet};
 use std::time::{Duration, Instant};
 use tour_bound::tour_bound;
 use tours::Tours;
@@ -285,4 +287,23 @@ fn tour_pairs(places: &Places<'_>) -> Vec<(Place, Place)> {
         .filter(|(from, to)| from != to && *from != Place::End && *to != Place::Start)
         .filter(|(from, to)| alone || !(*from == Place::Start && *to == Place::End))
         .collect()
+}
+
+/// The legs between places of these names; `None` where no tour has such a leg.
+fn named_pairs<'n>(
+    places: &Places<'_>,
+    pairs: &[(Place, Place)],
+    names: impl Iterator<Item = [&'n str; 2]>,
+) -> Vec<Option<(Place, Place)>> {
+    let named: HashMap<String, Place> = places
+        .all()
+        .into_iter()
+        .map(|place| (places.name(place), place))
+        .collect();
+    let of_tours: HashSet<(Place, Place)> = pairs.iter().copied().collect();
+    let pair = |[from, to]: [&str; 2]| {
+        let ends = named.get(from).copied().zip(named.get(to).copied());
+        ends.filter(|pair| of_tours.contains(pair))
+    };
+    names.map(pair).collect()
 }

@@ -17,20 +17,19 @@ mod premises;
 
 use super::Run;
 use super::additive_tours::LegTimes;
-use super::canonical::{CanonicalLeg, missing_from};
+use super::bounds_by_form::BoundsByForm;
+use super::canonical::CanonicalLeg;
 use super::places::Places;
 use super::proved_legs::ProvedLegs;
 use super::strongest::{StrongestBounds, strongest_between};
 use super::tables::CertifiedLeg;
 use super::tour_bound::tour_bound;
-use super::tour_pairs;
+use super::{named_pairs, tour_pairs};
 use crate::bounds::certify::{self, Rejection};
 use crate::model::scenario::Scenario;
 use crate::run::progress::{Progress, Stage};
 use crate::tour::order::Place;
-use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
 
 /// The certified bounds of a plan.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -160,61 +159,48 @@ pub fn verify_certificate(
 ) -> CheckedCertificate {
     let places = Places::of(scenario);
     let pairs = tour_pairs(&places);
+    let names = certificate.legs.iter();
+    let names = names.map(|leg| [leg.from.as_str(), leg.to.as_str()]);
+    let between = named_pairs(&places, &pairs, names);
     let verifier = CertificateVerifier {
         places: &places,
-        named: places
-            .all()
-            .into_iter()
-            .map(|p| (places.name(p), p))
-            .collect(),
-        tour_legs: pairs.iter().copied().collect(),
         run,
         done: AtomicU64::new(0),
         total: AtomicU64::new(certificate.legs.len() as u64),
-        known: Mutex::default(),
+        known: BoundsByForm::default(),
     };
-    let legs = run.pool.map(&certificate.legs, |leg| {
-        let verdict = verifier.verify_leg(leg);
+    let claims: Vec<_> = certificate.legs.iter().zip(&between).collect();
+    let legs = run.pool.map(&claims, |(leg, pair)| {
+        let verdict = verifier.verify_leg(leg, **pair);
         verifier.report_progress();
         verdict
     });
-    let tour = verifier.verify_tour_bound(certificate, &pairs);
-    let names = certificate.legs.iter();
-    let names: Vec<_> = names
-        .map(|leg| (leg.from.clone(), leg.to.clone()))
-        .collect();
     CheckedCertificate {
         legs,
-        tour,
-        strongest: strongest_between(&places, &names, run),
+        tour: verifier.verify_tour_bound(certificate, &pairs),
+        strongest: strongest_between(&places, &between, run),
     }
 }
 
 /// Verifies bounds on the legs and tours of a scenario.
 struct CertificateVerifier<'a> {
     places: &'a Places<'a>,
-    named: HashMap<String, Place>,
-    /// The pairs of places that can be a leg of a tour.
-    tour_legs: HashSet<(Place, Place)>,
     run: Run<'a>,
     /// Number of proofs attempted.
     done: AtomicU64,
     /// Number of proofs asked for so far.
     total: AtomicU64,
-    /// Proved bounds by [`CanonicalLeg::key`], s; `None` where the proof failed.
-    known: Mutex<HashMap<String, Option<f64>>>,
+    /// Bounds that are proved; of a leg without one the proof failed.
+    known: BoundsByForm,
 }
 
 impl CertificateVerifier<'_> {
-    fn verify_leg(&self, leg: &LegCertificate) -> Verdict {
+    /// The verdict on the bound of a leg between two places; `None` for them where no tour has it.
+    fn verify_leg(&self, leg: &LegCertificate, pair: Option<(Place, Place)>) -> Verdict {
         let Some(bound) = leg.lower_bound_s else {
             return Verdict::NoBound;
         };
-        let ends = self.named.get(&leg.from).zip(self.named.get(&leg.to));
-        let Some(pair) = ends
-            .map(|(from, to)| (*from, *to))
-            .filter(|pair| self.tour_legs.contains(pair))
-        else {
+        let Some(pair) = pair else {
             return Verdict::Rejected(Objection::NoSuchLeg);
         };
         if let Some(early) = self.early_verdict(bound, leg.duration_s) {
@@ -270,31 +256,18 @@ impl CertificateVerifier<'_> {
 
     /// Proves the bounds of the legs between pairs of places; legs with equal canonical forms once.
     fn prove_legs(&self, pairs: &[(Place, Place)]) -> Vec<Option<CertifiedLeg>> {
-        let canonical = pairs.iter().map(|pair| Some(canonical(self.places, *pair)));
-        let legs: Vec<_> = canonical.collect();
-        let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        let missing = missing_from(&known(), &legs);
-        self.total
-            .fetch_add(missing.len() as u64, Ordering::Relaxed);
-        let bounds = self.run.pool.map(&missing, |(index, leg)| {
-            let pair = pairs[*index];
-            let bound = (!self.run.stop.is_set()).then(|| self.prove_leg(pair, leg, None).ok());
-            self.report_progress();
-            bound
-        });
-        let mut known = known();
-        for ((_, leg), bound) in missing.into_iter().zip(bounds) {
-            if let Some(bound) = bound {
-                known.insert(leg.key().to_owned(), bound);
-            }
-        }
-        let entry = |leg: &Option<CanonicalLeg>| {
-            Some(CertifiedLeg {
-                lower_bound: *known.get(leg.as_ref()?.key())?,
+        let forms = pairs.iter().map(|pair| Some(canonical(self.places, *pair)));
+        let begin = |missing: usize| _ = self.total.fetch_add(missing as u64, Ordering::Relaxed);
+        let bound = |index: usize, leg: &CanonicalLeg| {
+            let proved = (!self.run.stop.is_set()).then(|| CertifiedLeg {
+                lower_bound: self.prove_leg(pairs[index], leg, None).ok(),
                 solve_time: 0.0,
-            })
+            });
+            self.report_progress();
+            proved
         };
-        legs.iter().map(entry).collect()
+        self.known
+            .of(&forms.collect::<Vec<_>>(), self.run.pool, begin, bound)
     }
 
     /// The verdict on a bound, s, where it needs no proof. `duration_s` is the duration in the plan

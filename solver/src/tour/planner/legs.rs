@@ -4,6 +4,7 @@
 //! table, between the tables of one solve and, through the store, between solves.
 
 use super::Run;
+use super::bounds_by_form::BoundsByForm;
 use super::canonical::{CanonicalLeg, missing_from};
 use super::from_store::{leg_from_store, stored_leg};
 use super::places::Places;
@@ -29,8 +30,9 @@ pub(super) struct LegSolver<'a> {
     places: &'a Places<'a>,
     run: Run<'a>,
     stop: &'a StopSignal,
-    known: ByKey<Arc<SolvedLeg>>,
-    certified: ByKey<CertifiedLeg>,
+    /// By [`CanonicalLeg::key`].
+    known: Mutex<HashMap<String, Arc<SolvedLeg>>>,
+    certified: BoundsByForm,
     /// Duration of the first tour and lower bound on all tours, s, when known: part of every report
     /// of progress.
     reported: Mutex<(Option<f64>, Option<f64>)>,
@@ -44,17 +46,14 @@ pub(super) struct LegSolver<'a> {
     contradictions: AtomicU64,
 }
 
-/// Results by [`CanonicalLeg::key`].
-type ByKey<T> = Mutex<HashMap<String, T>>;
-
 impl<'a> LegSolver<'a> {
     pub(super) fn new(places: &'a Places<'a>, run: Run<'a>, stop: &'a StopSignal) -> Self {
         Self {
             places,
             run,
             stop,
-            known: ByKey::default(),
-            certified: ByKey::default(),
+            known: Mutex::default(),
+            certified: BoundsByForm::default(),
             reported: Mutex::default(),
             solved: AtomicU64::new(0),
             from_store: AtomicU64::new(0),
@@ -237,18 +236,9 @@ impl<'a> LegSolver<'a> {
         pairs: &[(Place, Place)],
     ) -> Vec<Option<CertifiedLeg>> {
         let canonical = self.all_canonical(kind, pairs);
-        let missing = missing_from(&lock(&self.certified), &canonical);
-        let bounds = self.run.pool.map(&missing, |(_, leg)| {
-            (!self.stop.is_set()).then(|| certify(self.places, leg))
-        });
-        let mut certified = lock(&self.certified);
-        for ((_, leg), bound) in missing.into_iter().zip(bounds) {
-            if let Some(bound) = bound {
-                certified.insert(leg.key().to_owned(), bound);
-            }
-        }
-        let known = |leg: &Option<CanonicalLeg>| certified.get(leg.as_ref()?.key()).copied();
-        canonical.iter().map(known).collect()
+        let bound =
+            |_, leg: &CanonicalLeg| (!self.stop.is_set()).then(|| certify(self.places, leg));
+        self.certified.of(&canonical, self.run.pool, |_| (), bound)
     }
 
     fn canonical(&self, kind: LegKind, from: Place, to: Place) -> CanonicalLeg {
@@ -343,7 +333,7 @@ impl<'a> LegSolver<'a> {
     /// Computes the certified bound of a leg that is stored without one, or with one of another
     /// version, and stores it.
     fn prove_stored(&self, leg: &CanonicalLeg, row: StoredLeg, solved: &mut SolvedLeg) {
-        let known = lock(&self.certified).get(leg.key()).copied();
+        let known = self.certified.known(leg);
         let bound = known.unwrap_or_else(|| certify(self.places, leg));
         solved.certified = bound.lower_bound;
         if bound.lower_bound.is_some() {
@@ -374,7 +364,7 @@ impl<'a> LegSolver<'a> {
 
     /// Solves a leg, and stores it.
     fn solve(&self, kind: LegKind, leg: &CanonicalLeg) -> SolvedLeg {
-        let bound = lock(&self.certified).get(leg.key()).copied();
+        let bound = self.certified.known(leg);
         let mut fresh = solve(self.places, leg, bound, self.stop);
         self.compare_with_bound(leg, &mut fresh);
         if fresh.solution.status == NlpStatus::Converged && !self.stop.is_set() {
@@ -418,7 +408,7 @@ impl<'a> LegSolver<'a> {
     }
 }
 
-fn lock<T>(remembered: &ByKey<T>) -> MutexGuard<'_, HashMap<String, T>> {
+fn lock<T>(remembered: &Mutex<HashMap<String, T>>) -> MutexGuard<'_, HashMap<String, T>> {
     // A panic under the lock leaves the map consistent.
     remembered.lock().unwrap_or_else(PoisonError::into_inner)
 }

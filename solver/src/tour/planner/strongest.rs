@@ -5,18 +5,17 @@
 //! ramps, and between targets that stop some components only (`bounds::certified`), in milliseconds.
 //! Momentum and free rolls have bounds by boxes alone.
 
-use super::canonical::{CanonicalLeg, missing_from};
+use super::bounds_by_form::BoundsByForm;
+use super::canonical::CanonicalLeg;
 use super::certificate::canonical;
 use super::legs::certify;
 use super::places::Places;
 use super::proved_legs::ProvedLegs;
 use super::tables::CertifiedLeg;
 use super::tour_bound::tour_bound;
-use super::{Run, tour_pairs};
+use super::{Run, named_pairs, tour_pairs};
 use crate::model::scenario::Scenario;
 use crate::tour::order::Place;
-use std::collections::HashMap;
-use std::sync::{Mutex, PoisonError};
 
 /// Number of targets up to which all tours are bounded.
 const MAX_TARGETS: usize = 20;
@@ -37,82 +36,42 @@ pub fn strongest_bounds(
     legs: &[(String, String)],
     run: Run<'_>,
 ) -> StrongestBounds {
-    strongest_between(&Places::of(scenario), legs, run)
+    let places = Places::of(scenario);
+    let names = legs.iter().map(|(from, to)| [from.as_str(), to.as_str()]);
+    let legs = named_pairs(&places, &tour_pairs(&places), names);
+    strongest_between(&places, &legs, run)
 }
 
-/// The same between the places of a scenario.
+/// The same between places; `None` where no tour has such a leg.
 pub(super) fn strongest_between(
     places: &Places<'_>,
-    legs: &[(String, String)],
+    legs: &[Option<(Place, Place)>],
     run: Run<'_>,
 ) -> StrongestBounds {
-    let strongest = Strongest {
-        places,
-        run,
-        known: Mutex::default(),
+    let known = BoundsByForm::default();
+    let prove = |pairs: &[Option<(Place, Place)>]| {
+        let forms = pairs.iter().map(|pair| Some(canonical(places, (*pair)?)));
+        let bound = |_, leg: &CanonicalLeg| (!run.stop.is_set()).then(|| strongest(places, leg));
+        known.of(&forms.collect::<Vec<_>>(), run.pool, |_| (), bound)
     };
-    let named: HashMap<String, Place> = places
-        .all()
-        .into_iter()
-        .map(|place| (places.name(place), place))
-        .collect();
-    let pairs = tour_pairs(places);
-    let asked: Vec<Option<(Place, Place)>> = legs
-        .iter()
-        .map(|(from, to)| named.get(from).copied().zip(named.get(to).copied()))
-        .map(|pair| pair.filter(|pair| pairs.contains(pair)))
-        .collect();
-    let known: Vec<_> = asked.iter().flatten().copied().collect();
-    let mut proved = strongest.prove(&known).into_iter();
-    let legs = asked.iter().map(|pair| {
-        let leg = pair.and_then(|_| proved.next().flatten());
-        leg.and_then(|leg| leg.lower_bound)
-    });
-    let legs = legs.collect();
-    let bounds = ProvedLegs::new(places, Box::new(|pairs| strongest.prove(pairs)));
+    let proved = prove(legs).into_iter();
+    let between =
+        |pairs: &[(Place, Place)]| prove(&pairs.iter().copied().map(Some).collect::<Vec<_>>());
+    let bounds = ProvedLegs::new(places, Box::new(between));
     let few = places.scenario.targets().len() <= MAX_TARGETS;
     let tour_s = few.then(|| tour_bound(places, &bounds, run.pool, run.stop));
     StrongestBounds {
-        legs,
+        legs: proved.map(|leg| leg?.lower_bound).collect(),
         tour_s: tour_s.flatten().filter(|_| !run.stop.is_set()),
     }
 }
 
-struct Strongest<'a> {
-    places: &'a Places<'a>,
-    run: Run<'a>,
-    /// Bounds by [`CanonicalLeg::key`], s.
-    known: Mutex<HashMap<String, Option<f64>>>,
-}
-
-impl Strongest<'_> {
-    /// The bounds of the legs between pairs of places; legs with equal canonical forms once.
-    fn prove(&self, pairs: &[(Place, Place)]) -> Vec<Option<CertifiedLeg>> {
-        let forms = pairs.iter().map(|pair| Some(canonical(self.places, *pair)));
-        let legs: Vec<Option<CanonicalLeg>> = forms.collect();
-        let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        let missing = missing_from(&known(), &legs);
-        let bounds = self.run.pool.map(&missing, |(_, leg)| {
-            (!self.run.stop.is_set()).then(|| self.bound(leg))
-        });
-        let mut known = known();
-        for ((_, leg), bound) in missing.into_iter().zip(bounds) {
-            if let Some(bound) = bound {
-                known.insert(leg.key().to_owned(), bound);
-            }
-        }
-        let entry = |leg: &Option<CanonicalLeg>| {
-            Some(CertifiedLeg {
-                lower_bound: *known.get(leg.as_ref()?.key())?,
-                solve_time: 0.0,
-            })
-        };
-        legs.iter().map(entry).collect()
-    }
-
-    fn bound(&self, leg: &CanonicalLeg) -> Option<f64> {
-        let boxed = certify(self.places, leg).lower_bound?;
-        let beyond = self.places.certified.beyond(&leg.from, &leg.to, boxed);
-        Some(beyond.unwrap_or(boxed))
+/// The largest bound on a leg that is proved.
+fn strongest(places: &Places<'_>, leg: &CanonicalLeg) -> CertifiedLeg {
+    let boxed = certify(places, leg);
+    let beyond = |known_s| places.certified.beyond(&leg.from, &leg.to, known_s);
+    CertifiedLeg {
+        lower_bound: boxed.lower_bound.and_then(beyond).or(boxed.lower_bound),
+        ..boxed
     }
 }

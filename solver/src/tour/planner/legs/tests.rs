@@ -41,7 +41,9 @@ fn a_bound_above_the_duration_of_a_solved_leg_is_reported_and_dropped() {
                 lower_bound: Some(bound_s),
                 solve_time: 0.0,
             };
-            lock(&legs.certified).insert(leg.key().to_owned(), known);
+            let forms = [Some(leg.clone())];
+            let pool = legs.run.pool;
+            legs.certified.of(&forms, pool, |_| (), |_, _| Some(known));
             let solved = legs.solve(LegKind::RestToRest, &leg);
             assert!(solved.solution.duration().is_some());
             assert_eq!(solved.certified.is_none(), is_false);

@@ -23,12 +23,12 @@ use super::flow::{Flow, angle_about, nearest};
 use super::level_curves::LevelCurves;
 use super::pairs::{CostatePair, LevelPair};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Number of ways around a curve from which [`narrow_curve`] bounds all others.
 const MAX_AROUND: u32 = 300;
 /// Share of its period by which a curve's period may fall within a cell that tells anything.
-const LEAST_PERIOD: f64 = 0.02;
+const MIN_PERIOD: f64 = 0.02;
 /// Rounding of the time of a flow whose speeds are at most one.
 const ROUNDING: f64 = 1e-10;
 /// Rounding of the angle by which a turn moves an axis, rad.
@@ -84,7 +84,7 @@ impl Target<'_> {
         let around = self.curves.around(at[1].ends[1], level)?;
         let mut of_period = Spread::default();
         self.add_walls(&mut of_period, &around, &at);
-        if around.time + of_period.low <= LEAST_PERIOD * around.time {
+        if around.time + of_period.low <= MIN_PERIOD * around.time {
             return Some((flow.time + spread.low).max(0.0));
         }
         let missing = self.missing(&flow, &at[1]);
@@ -100,7 +100,8 @@ impl Target<'_> {
                 break;
             }
             if ways > MAX_AROUND {
-                let rest = self.narrow_curve(&around, at.map(|at| at.level));
+                let longest = around.time + of_period.high;
+                let rest = self.narrow_curve(&around, at.map(|at| at.level), longest);
                 return least.into_iter().chain(rest).reduce(f64::min);
             }
             let error = off * spread.variation + ROUNDING;
@@ -156,32 +157,28 @@ impl Target<'_> {
         }
     }
 
-    /// A bound on ways that lead many times around a small curve.
+    /// A bound on ways that lead many times around a small curve, which takes at most `period` once around.
     ///
     /// All along, the costate stays within an angle `e` of an axis `n`, which therefore swings by `2 e` at most
-    /// and returns to there: the twist about it grows at `h_K(n) + tan(e) |w|` at most. `None` where the turn
-    /// swings the axis further, so that no such way makes it.
-    fn narrow_curve(&self, around: &Flow, levels: [f64; 3]) -> Option<f64> {
-        let corners: Vec<Vector3<f64>> = around
-            .walls
-            .iter()
-            .flat_map(|&(vertex, wall)| {
-                let circles = &self.curves.circles[vertex];
-                let wall = &circles.walls[wall];
-                let corner = |level: f64| {
-                    circles.costate(wall.azimuth + circles.half_width(wall, level), level)
-                };
-                levels.map(corner)
-            })
-            .collect();
-        let axis = corners.iter().sum::<Vector3<f64>>().try_normalize(0.0)?;
-        // An arc is no longer than its circle's part between two corners.
-        let arc = |pair: [&Vector3<f64>; 2]| pair[0].angle(pair[1]);
-        let shifted = corners.iter().cycle().skip(levels.len());
-        let longest = corners.iter().zip(shifted).map(|(a, b)| arc([a, b]));
-        let longest = longest.fold(0.0, f64::max);
+    /// and returns to there: the twist about it grows at `h_K(n) + tan(e) |w|` at most. Between two walls the
+    /// costate, whose speed is at most one, goes no further from the nearer one than half a period. `None` where
+    /// the turn swings the axis further, so that no such way makes it.
+    fn narrow_curve(&self, around: &Flow, levels: [f64; 3], period: f64) -> Option<f64> {
+        let corners = around.walls.iter().flat_map(|&(vertex, wall)| {
+            let circles = &self.curves.circles[vertex];
+            let wall = &circles.walls[wall];
+            levels
+                .map(|level| circles.costate(wall.azimuth + circles.half_width(wall, level), level))
+        });
+        let corners: Vec<Vector3<f64>> = corners.collect();
+        let Some(axis) = corners.iter().sum::<Vector3<f64>>().try_normalize(0.0) else {
+            return Some(0.0);
+        };
         let widest = corners.iter().map(|corner| corner.angle(&axis));
-        let cone = widest.fold(0.0, f64::max) + longest;
+        let cone = widest.fold(0.0, f64::max) + 0.5 * period;
+        if cone >= FRAC_PI_2 {
+            return Some(0.0);
+        }
         let along = self.turn.imag().dot(&axis);
         let swing = 2.0 * (self.turn.imag() - axis * along).norm().min(1.0).asin();
         if swing > 2.0 * cone + SWING_ROUNDING {

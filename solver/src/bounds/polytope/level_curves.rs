@@ -116,8 +116,16 @@ impl Circles {
 #[derive(Debug, Clone)]
 pub(super) struct LevelCurves {
     pub(super) circles: Vec<Circles>,
-    /// The levels on which curves touch, meet or vanish, from below.
-    pub(super) critical: Vec<f64>,
+    /// The levels on which curves touch, meet or vanish.
+    pub(super) critical: Vec<CriticalLevel>,
+}
+
+/// A level on which curves touch, meet or vanish.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CriticalLevel {
+    pub(super) level: f64,
+    /// Whether it has a saddle, on which a costate may rest.
+    pub(super) has_saddle: bool,
 }
 
 impl LevelCurves {
@@ -127,9 +135,8 @@ impl LevelCurves {
             .map(|at| circles(faces, at, &mut critical))
             .collect();
         for facet in &faces.facets {
-            critical.shared(1.0 / facet.norm());
+            critical.shared(1.0 / facet.norm(), false);
         }
-        critical.0.sort_by(f64::total_cmp);
         Self {
             circles,
             critical: critical.0,
@@ -139,16 +146,17 @@ impl LevelCurves {
 
 /// Different levels.
 #[derive(Default)]
-struct Levels(Vec<f64>);
+struct Levels(Vec<CriticalLevel>);
 
 impl Levels {
     /// The level that stands for all that are the same up to rounding.
-    fn shared(&mut self, level: f64) -> f64 {
-        let same = |known: &&f64| (*known - level).abs() <= SAME_LEVEL * level;
-        if let Some(known) = self.0.iter().find(same) {
-            return *known;
+    fn shared(&mut self, level: f64, has_saddle: bool) -> f64 {
+        let same = |known: &&mut CriticalLevel| (known.level - level).abs() <= SAME_LEVEL * level;
+        if let Some(known) = self.0.iter_mut().find(same) {
+            known.has_saddle |= has_saddle;
+            return known.level;
         }
-        self.0.push(level);
+        self.0.push(CriticalLevel { level, has_saddle });
         level
     }
 }
@@ -170,14 +178,15 @@ fn circles(faces: &Faces, at: usize, critical: &mut Levels) -> Circles {
         let edge = high - low;
         let across = other - axis * axis.dot(&other);
         let product = vertex.dot(&other);
+        let is_saddle = speed * speed > product && other.norm_squared() > product;
         let back = faces.neighbours[to].iter().position(|&near| near == at);
         Wall {
             to,
             back: back.expect("edges lead both ways"),
             azimuth: across.dot(&b).atan2(across.dot(&a)),
             slope: (speed * speed - product) / (speed * across.norm()),
-            level: critical.shared(low.cross(&edge).norm() / edge.norm()),
-            is_saddle: speed * speed > product && other.norm_squared() > product,
+            level: critical.shared(low.cross(&edge).norm() / edge.norm(), is_saddle),
+            is_saddle,
         }
     };
     let walls = faces.neighbours[at].iter().map(wall).collect();

@@ -6,7 +6,7 @@
 //! where both costates are one. On each part the way between the costates passes the same walls.
 
 use super::flow::{OnCircle, nearest};
-use super::level_curves::LevelCurves;
+use super::level_curves::{LevelCurves, Wall};
 use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -38,8 +38,8 @@ pub(super) struct Parts {
     pub(super) pair: LevelPair,
     /// Ranges of `t` without a cut within.
     pub(super) ranges: Vec<[f64; 2]>,
-    /// Where its level is critical, with the level.
-    pub(super) critical: Vec<(f64, f64)>,
+    /// Where its level is that of a saddle, with the level.
+    pub(super) saddles: Vec<(f64, f64)>,
 }
 
 impl LevelPair {
@@ -72,7 +72,7 @@ impl LevelPair {
         let p = across.cross(&Vector3::ith(across.iamin(), 1.0)).normalize();
         let q = across.cross(&p);
         let place_of = |vector: &Vector3<f64>| vector.dot(&q).atan2(vector.dot(&p));
-        let beyond = |wall: &super::level_curves::Wall| curves.circles[wall.to].vertex;
+        let beyond = |wall: &Wall| curves.circles[wall.to].vertex;
         let before = first.walls.iter().map(|wall| first.vertex - beyond(wall));
         let after = last.walls.iter();
         let after = after.map(|wall| turned(last.vertex - beyond(wall)));
@@ -96,28 +96,34 @@ impl LevelPair {
         let near = |t: f64| nearest(t, 0.5 * (low + high));
         let highest = first.vertex.dot(&p).hypot(first.vertex.dot(&q));
         let top = near(place_of(&first.vertex));
-        let crossed = curves.critical.iter().filter(|level| **level < highest);
-        let crossed = crossed.flat_map(|&level| {
-            let half = (level / highest).acos();
-            [top - half, top + half].map(|t| (near(t), level))
-        });
+        let crossed = curves.critical.iter();
+        let crossed = crossed.filter(|critical| critical.level < highest);
         let within = |t: &f64| *t > low && *t < high;
-        let critical: Vec<_> = crossed.filter(|(t, _)| within(t)).collect();
-        let mut cuts: Vec<f64> = critical.iter().map(|(t, _)| *t).collect();
+        let (mut cuts, mut saddles) = (vec![low, high], Vec::new());
+        for critical in crossed {
+            let half = (critical.level / highest).acos();
+            for t in [top - half, top + half]
+                .map(near)
+                .into_iter()
+                .filter(within)
+            {
+                cuts.push(t);
+                saddles.extend(critical.has_saddle.then_some((t, critical.level)));
+            }
+        }
         let at_axis = near(place_of(axis));
         cuts.extend(
             [top, at_axis, near(at_axis + PI)]
                 .into_iter()
                 .filter(within),
         );
-        cuts.extend([low, high]);
         cuts.sort_by(f64::total_cmp);
         let ranges = cuts.windows(2).map(|cut| [cut[0], cut[1]]);
         let ranges = ranges.filter(|[from, to]| to - from > NO_PART).collect();
         Some(Parts {
             pair: Self { vertices, p, q },
             ranges,
-            critical,
+            saddles,
         })
     }
 }

@@ -71,7 +71,7 @@ pub(super) fn search(
         let Some(parts) = LevelPair::parts(curves, vertices, &turn, axis) else {
             continue;
         };
-        for (t, level) in parts.critical {
+        for (t, level) in parts.saddles {
             let at = parts.pair.at(t, curves, &target.back);
             let dwelling = dwells::follow(&target, &at, level, gauge);
             target.upper = dwelling.least.unwrap_or(target.upper);

@@ -82,6 +82,7 @@
 //! Pontryagin's maximum principle is standard; the enumeration is derived above. Swing and twist:
 //! the decomposition `q = q_swing q_twist` about a body axis.
 
+pub(crate) mod bisection;
 pub mod certificate;
 mod drift;
 mod extremal;

@@ -1,14 +1,13 @@
 //! The envelope `m_i(t; T)` of the rates of a motion, and its integral `s(T)`; both are defined in
 //! [`super::ramps`].
 
+use super::bisection::last_where;
 use super::limits::{EndRates, SlewLimits};
 use nalgebra::Vector3;
 
 /// Smallest width of a box, as a share of the rate limit and relative to its widest axis: more
 /// extreme boxes have many extremals and gain nothing.
 const MIN_SHARE: f64 = 0.1;
-/// Bisections of a duration, enough to reach rounding.
-const BISECTIONS: usize = 60;
 
 /// Limits with the rates at the two ends.
 #[derive(Debug, Clone, Copy)]
@@ -117,21 +116,7 @@ impl RateEnvelope {
         let short =
             |duration: f64| self.effective(rates, duration) + slope * (duration - from) < least;
         // A lower bound on the duration: all rates at their limits.
-        let mut step = least * rates.component_div(&self.limits.rates_rad_s).min();
-        let mut low = from;
-        while short(from + step) {
-            low = from + step;
-            step *= 2.0;
-        }
-        let mut high = from + step;
-        for _ in 0..BISECTIONS {
-            let middle = 0.5 * (low + high);
-            if short(middle) {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        low
+        let step = least * rates.component_div(&self.limits.rates_rad_s).min();
+        last_where(from, step, short)
     }
 }

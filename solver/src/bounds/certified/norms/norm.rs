@@ -1,6 +1,7 @@
 //! One norm: its polytope, and how much of it a slew can cover in a time.
 
 use super::facet_limits::Trapezoid;
+use crate::bounds::kinematic::bisection::last_where;
 use crate::bounds::kinematic::rate_envelope::RateEnvelope;
 use crate::bounds::polytope::RatePolytope;
 use crate::model::attitude::Attitude;
@@ -8,8 +9,6 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Parts of the time between two kinks: the limits are replaced by linear ones above them on each.
 const PARTS: usize = 2;
-/// Halvings of a duration.
-const BISECTIONS: usize = 40;
 
 /// A norm of rates with what limits it during a slew.
 #[derive(Debug)]
@@ -63,20 +62,7 @@ impl Norm {
         if least <= self.covered(known_s) {
             return known_s;
         }
-        let mut high = known_s.max(least);
-        while self.covered(high) < least {
-            high *= 2.0;
-        }
-        let mut low = known_s;
-        for _ in 0..BISECTIONS {
-            let middle = 0.5 * (low + high);
-            if self.covered(middle) < least {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        low
+        last_where(known_s, least, |duration| self.covered(duration) < least)
     }
 
     /// `s(T)`, from above.

@@ -5,28 +5,13 @@
 //! the rates at both ends.
 
 use super::facet_limits::Trapezoid;
-
-/// Halvings of a duration.
-const BISECTIONS: usize = 60;
+use crate::bounds::kinematic::bisection::last_where;
 
 /// The longest duration, s, in which a norm within such limits cannot cover an angle, rad.
 pub(super) fn least_duration(angle: f64, limits: &Trapezoid) -> f64 {
     if angle <= 0.0 {
         return 0.0;
     }
-    let covers = |duration: f64| limits.mean(duration) * duration >= angle;
-    let mut low = angle / limits.most;
-    let mut high = low;
-    while !covers(high) {
-        high *= 2.0;
-    }
-    for _ in 0..BISECTIONS {
-        let middle = 0.5 * (low + high);
-        if covers(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    low
+    let short = |duration: f64| limits.mean(duration) * duration < angle;
+    last_where(0.0, angle / limits.most, short)
 }

@@ -16,6 +16,7 @@ mod observe;
 mod operations;
 mod origin;
 mod page;
+mod paging;
 mod plans;
 mod protect;
 mod respond;

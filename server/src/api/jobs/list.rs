@@ -4,12 +4,10 @@ use super::super::App;
 use super::super::access::Caller;
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract;
+use super::super::paging::PageLimit;
 use crate::store::{JobRow, JobState, Listing, Work};
 use serde::Deserialize;
 use utoipa::IntoParams;
-
-const DEFAULT_LIMIT: u16 = 50;
-const MAX_LIMIT: u16 = 200;
 
 /// Filter and page of a list.
 #[derive(Debug, Deserialize, IntoParams)]
@@ -45,10 +43,7 @@ pub(in crate::api) async fn page(
     named: NameFilter,
 ) -> Result<(Vec<JobRow>, Option<String>), ApiError> {
     let wrong = |detail: String| ApiError::new(ErrorCode::InvalidParameter, detail);
-    let limit = query.limit.unwrap_or(DEFAULT_LIMIT);
-    if !(1..=MAX_LIMIT).contains(&limit) {
-        return Err(wrong(format!("limit is from 1 to {MAX_LIMIT}")));
-    }
+    let limit = PageLimit::of(query.limit)?;
     let state = query.state.map(|text| text.parse::<JobState>());
     let listing = Listing {
         work,
@@ -57,12 +52,9 @@ pub(in crate::api) async fn page(
         state: state.transpose().map_err(wrong)?,
         name: named.name,
         search: named.search,
-        limit: i64::from(limit) + 1,
+        limit: limit.read(),
     };
     let mut rows = app.store().jobs(&listing).await?;
-    let more = rows.len() > usize::from(limit);
-    rows.truncate(limit.into());
-    let last = rows.last().filter(|_| more);
-    let next = last.map(|job| job.sequence.to_string());
+    let next = limit.cut(&mut rows).map(|job| job.sequence.to_string());
     Ok((rows, next))
 }

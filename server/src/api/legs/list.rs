@@ -4,6 +4,7 @@ use super::super::App;
 use super::super::describe::{ParameterErrors, ServerErrors};
 use super::super::error::{ApiError, ErrorCode, ProblemDetails};
 use super::super::extract::{self, Parameters};
+use super::super::paging::PageLimit;
 use crate::documents::stored_legs::{StoredLegDocument, StoredLegListDocument};
 use crate::store::LegFilter;
 use axum::Json;
@@ -13,8 +14,6 @@ use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::problem::{Code, Problem};
 use utoipa::IntoParams;
 
-const DEFAULT_LIMIT: u16 = 50;
-const MAX_LIMIT: u16 = 200;
 /// Default tolerance: the rounding of attitudes written with six digits, degrees.
 const DEFAULT_TOLERANCE_DEG: f64 = 1e-3;
 
@@ -67,10 +66,7 @@ pub(in crate::api) async fn handler(
     State(app): State<App>,
     Parameters(query): Parameters<LegListQuery>,
 ) -> Result<Json<StoredLegListDocument>, ApiError> {
-    let limit = query.limit.unwrap_or(DEFAULT_LIMIT);
-    if !(1..=MAX_LIMIT).contains(&limit) {
-        return Err(wrong(format!("limit is from 1 to {MAX_LIMIT}")));
-    }
+    let limit = PageLimit::of(query.limit)?;
     let tolerance = query.tolerance_deg.unwrap_or(DEFAULT_TOLERANCE_DEG);
     if !(0.0..=180.0).contains(&tolerance) {
         return Err(wrong("tolerance_deg is from 0 to 180"));
@@ -92,16 +88,12 @@ pub(in crate::api) async fn handler(
         spacecraft: query.spacecraft_key,
         turn: turn.map(|turn| (turn, tolerance.to_radians())),
         after: extract::cursor(query.cursor.as_deref())?,
-        limit: i64::from(limit) + 1,
+        limit: limit.read(),
     };
     let mut rows = app.store().legs(&filter).await?;
-    let more = rows.len() > usize::from(limit);
-    rows.truncate(limit.into());
+    let next_cursor = limit.cut(&mut rows).map(|leg| leg.sequence.to_string());
     Ok(Json(StoredLegListDocument {
-        next_cursor: rows
-            .last()
-            .filter(|_| more)
-            .map(|leg| leg.sequence.to_string()),
+        next_cursor,
         legs: rows.iter().map(StoredLegDocument::from).collect(),
     }))
 }

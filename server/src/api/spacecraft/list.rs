@@ -3,17 +3,15 @@
 use super::super::App;
 use super::super::access::Caller;
 use super::super::describe::{ParameterErrors, ServerErrors};
-use super::super::error::{ApiError, ErrorCode};
+use super::super::error::ApiError;
 use super::super::extract::Parameters;
+use super::super::paging::PageLimit;
 use crate::base::clock::rfc3339;
 use crate::store::SpacecraftName;
 use axum::Json;
 use axum::extract::State;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
-
-const DEFAULT_LIMIT: u16 = 50;
-const MAX_LIMIT: u16 = 200;
 
 /// Page of the list.
 #[derive(Debug, Deserialize, IntoParams)]
@@ -72,25 +70,18 @@ pub(in crate::api) async fn handler(
     caller: Caller,
     Parameters(query): Parameters<SpacecraftListQuery>,
 ) -> Result<Json<SpacecraftList>, ApiError> {
-    let limit = query.limit.unwrap_or(DEFAULT_LIMIT);
-    if !(1..=MAX_LIMIT).contains(&limit) {
-        return Err(ApiError::new(
-            ErrorCode::InvalidParameter,
-            format!("limit is from 1 to {MAX_LIMIT}"),
-        ));
-    }
+    let limit = PageLimit::of(query.limit)?;
     let prefix = caller.client().map(|_| caller.own(""));
     let after = query.cursor.map(|name| caller.own(&name));
-    let more_than = i64::from(limit) + 1;
     let mut rows = app
         .store()
-        .spacecraft_names(prefix.as_deref(), after.as_deref(), more_than)
+        .spacecraft_names(prefix.as_deref(), after.as_deref(), limit.read())
         .await?;
-    let more = rows.len() > usize::from(limit);
-    rows.truncate(limit.into());
-    let last = rows.last().filter(|_| more);
+    let next_cursor = limit
+        .cut(&mut rows)
+        .map(|row| own_part(&row.name).to_owned());
     Ok(Json(SpacecraftList {
-        next_cursor: last.map(|row| own_part(&row.name).to_owned()),
+        next_cursor,
         spacecraft: rows.iter().map(ListedSpacecraft::from).collect(),
     }))
 }

@@ -62,6 +62,13 @@ export function scroller(caption, content) {
   return node;
 }
 
+/** Tells the width and height of a node, in whole pixels, at once and whenever they change. */
+export function watchSize(node, signal, listener) {
+  const watcher = new ResizeObserver(([{ contentRect }]) => listener(Math.round(contentRect.width), Math.round(contentRect.height)));
+  watcher.observe(node);
+  signal.addEventListener("abort", () => watcher.disconnect());
+}
+
 /** Something that is made when it is opened for the first time: the data of a plot as a table. */
 export function disclosure(summary, make) {
   const node = el("details", {}, el("summary", {}, summary));

@@ -1,7 +1,7 @@
 // The spacecraft at the moment that is shown, from outside: its box, wheels, boresights with their cones,
 // the axes of the reference frame and the Sun. It is turned by dragging and with the arrow keys.
 
-import { el, section } from "../dom.js";
+import { el, section, watchSize } from "../dom.js";
 import { paintAgain } from "../picture/painters.js";
 import { pictureButtons } from "../picture/save.js";
 import { letters, onTheme } from "../plots/palette.js";
@@ -69,12 +69,10 @@ export function body(flight, cursor, toggle, signal) {
   const data = readings(flight, parts, cursor, signal);
   cursor.listen(renew, signal);
   onTheme(renew, signal);
-  const watcher = new ResizeObserver(([entry]) => {
-    [width, height] = [entry.contentRect.width, entry.contentRect.height].map(Math.round);
+  watchSize(canvas, signal, (...sizes) => {
+    [width, height] = sizes;
     renew();
   });
-  watcher.observe(canvas);
-  signal.addEventListener("abort", () => watcher.disconnect());
   turned.reset();
 
   const head = el("div", { class: "tools" }, el("label", { for: "body-frame" }, "Seen from"), choice, turned.buttons,

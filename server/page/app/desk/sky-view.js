@@ -1,6 +1,6 @@
 // The sky before planning: where targets, cones and the Sun are. Targets are chosen and moved here.
 
-import { disclosure, el, section, svg, table } from "../dom.js";
+import { disclosure, el, section, svg, table, watchSize } from "../dom.js";
 import { fixed } from "../format.js";
 import { dot, longitudeLatitude, sum, unit } from "../rotation.js";
 import { pictureButtons } from "../picture/save.js";
@@ -120,12 +120,10 @@ export function skyView(desk) {
       "Shift+ArrowUp": () => shift(0, 1), "Shift+ArrowDown": () => shift(0, -1),
     },
   });
-  const watcher = new ResizeObserver(([entry]) => {
-    size = Math.round(entry.contentRect.width);
+  watchSize(picture, desk.signal, (width) => {
+    size = width;
     turned.renew();
   });
-  watcher.observe(picture);
-  desk.signal.addEventListener("abort", () => watcher.disconnect());
   axisChoice.addEventListener("change", () => {
     wanted = axes[axisChoice.value].name;
     renew();

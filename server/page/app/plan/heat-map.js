@@ -1,6 +1,6 @@
 // A large matrix as a picture: one cell is chosen, by pointing or with keys, and can be looked at closely.
 
-import { el } from "../dom.js";
+import { el, watchSize } from "../dom.js";
 import { fixed } from "../format.js";
 import { paintAgain } from "../picture/painters.js";
 import { colour, letters, onTheme } from "../plots/palette.js";
@@ -104,12 +104,10 @@ export function heatMap({ label, times, isFlown, chosen }, signal) {
     ground = null;
     renew();
   }, signal);
-  const watcher = new ResizeObserver(([entry]) => {
-    size = Math.round(entry.contentRect.width);
+  watchSize(canvas, signal, (width) => {
+    size = width;
     renew();
   });
-  watcher.observe(canvas);
-  signal.addEventListener("abort", () => watcher.disconnect());
   const button = (text, name, act) => el("button", { type: "button", class: "small", "aria-label": name, onclick: act }, text);
   chosen(view.row, view.column);
   return {

@@ -1,5 +1,6 @@
 // A plot over time by uPlot, with the manners that all plots share.
 
+import { watchSize } from "../dom.js";
 import { paintAgain } from "../picture/painters.js";
 import { paintPlot } from "../picture/plot-again.js";
 import { colour, letters, onTheme } from "./palette.js";
@@ -42,16 +43,11 @@ export function plot(place, options, data, signal) {
     data,
     place,
   );
-  const watcher = new ResizeObserver(([entry]) => {
-    const width = Math.round(entry.contentRect.width);
+  watchSize(place, signal, (width) => {
     if (width > 0 && width !== made.width) made.setSize({ width, height: made.height });
   });
-  watcher.observe(place);
   paintAgain(made.ctx.canvas, (ink) => paintPlot(ink, made, options));
   onTheme(() => made.redraw(false), signal);
-  signal.addEventListener("abort", () => {
-    watcher.disconnect();
-    made.destroy();
-  });
+  signal.addEventListener("abort", () => made.destroy());
   return made;
 }

@@ -1,7 +1,7 @@
 // The sky view: where an axis of the body points during the flight. It is turned by dragging and
 // with the arrow keys.
 
-import { disclosure, el, section, svg, table } from "../dom.js";
+import { disclosure, el, section, svg, table, watchSize } from "../dom.js";
 import { fixed } from "../format.js";
 import { dot, longitudeLatitude, rotate, sum, unit, upward } from "../rotation.js";
 import { pictureButtons } from "../picture/save.js";
@@ -55,12 +55,10 @@ export function sphere(flight, cursor, signal, { title = "Sky", id = "body-axis"
     for (const stop of content.stops) stop.reached = stop.time <= time;
     turned.renew();
   });
-  const watcher = new ResizeObserver(([entry]) => {
-    size = Math.round(entry.contentRect.width);
+  watchSize(picture, signal, (width) => {
+    size = width;
     turned.renew();
   });
-  watcher.observe(picture);
-  signal.addEventListener("abort", () => watcher.disconnect());
   turned.reset();
 
   let data = directions(flight, axis);

@@ -1,6 +1,6 @@
 // An envelope of wheels in three dimensions, with the ways of slews in it.
 
-import { el } from "../dom.js";
+import { el, watchSize } from "../dom.js";
 import { paintAgain } from "../picture/painters.js";
 import { colour, curve, letters, onTheme } from "../plots/palette.js";
 import { dot, scaled } from "../rotation.js";
@@ -38,12 +38,10 @@ export function envelopeSolid({ name, full, inner, ways }, signal) {
   const turned = turning(canvas, { draw, home: () => HOME, width: () => size });
   paintAgain(canvas, show);
   onTheme(turned.renew, signal);
-  const watcher = new ResizeObserver(([entry]) => {
-    size = Math.round(entry.contentRect.width);
+  watchSize(canvas, signal, (width) => {
+    size = width;
     turned.renew();
   });
-  watcher.observe(canvas);
-  signal.addEventListener("abort", () => watcher.disconnect());
   turned.reset();
   return { node: canvas, buttons: turned.buttons };
 }

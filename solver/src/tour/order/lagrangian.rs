@@ -32,6 +32,7 @@
 //! Lagrangian dual with steps `1/m`. Legs are solved again only where a multiplier has changed.
 
 mod paths;
+mod rounded;
 
 pub use paths::LagrangianPaths;
 
@@ -42,8 +43,8 @@ use crate::run::stop::StopSignal;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Number of targets up to which Lagrangian bounds are computed. The table of paths has some
-/// `n^3 2^n / 8` entries of four bytes: 160 MB for sixteen targets, and half of it for each target
-/// less.
+/// `n^3 2^n / 8` entries of two bytes: 53 MiB for sixteen targets, and less than half of it for
+/// each target less.
 pub const MAX_LAGRANGIAN_TARGETS: usize = 16;
 // With start, end and the number for no neighbour, a row fits the rows of the table of subsets.
 const _: () = assert!(MAX_LAGRANGIAN_TARGETS + 3 <= MAX_EXACT_TARGETS);

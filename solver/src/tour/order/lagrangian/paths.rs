@@ -2,6 +2,7 @@
 //! places in the state.
 
 use super::LagrangianLegs;
+use super::rounded::RoundedDown;
 use crate::model::order_rules::OrderRules;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
@@ -15,9 +16,9 @@ use crate::tour::order::completion::subsets::{Admitted, least_sum, mask, members
 pub struct LagrangianPaths {
     legs: LagrangianLegs,
     admitted: Admitted,
-    /// For every nonempty set `R`, an entry for every triple `h, i, j` of targets outside it,
-    /// rounded down to single precision so that every entry is a lower bound.
-    rest: Vec<Box<[f32]>>,
+    /// For every nonempty set `R`, an entry for every three different targets `h, i, j` outside it,
+    /// a lower bound.
+    rest: Vec<RoundedDown>,
     root_s: f64,
 }
 
@@ -26,9 +27,9 @@ impl LagrangianPaths {
     #[must_use]
     pub fn bytes(targets: usize) -> u64 {
         let targets = targets as u64;
-        // The mean over all sets of the cube of the number of targets outside the set.
-        let states = (targets * targets * (targets + 3)) << targets;
-        states / 8 * 4
+        // Three different targets outside a set: the other targets are in it or not.
+        let entries = (targets * targets.saturating_sub(1) * targets.saturating_sub(2)) << targets;
+        entries / 8 * RoundedDown::BYTES
     }
 
     /// An empty table for the orders that some rules admit.
@@ -38,7 +39,7 @@ impl LagrangianPaths {
         Self {
             legs: legs.clone(),
             admitted: Admitted::of(rules, targets),
-            rest: vec![Box::default(); 1 << targets],
+            rest: (0..1 << targets).map(|_| RoundedDown::default()).collect(),
             root_s: 0.0,
         }
     }
@@ -179,27 +180,33 @@ impl LagrangianPaths {
             return self.legs.ending([h, i, j]);
         }
         if h < self.legs.table.targets() {
-            return f64::from(self.rest[left][self.state([h, i, j], left)]);
+            return self.rest[left].get(self.state([h, i, j], left));
         }
         members(self.admitted.next(left))
             .map(|k| self.legs.cost([h, i, j, k]) + self.after([i, j, k], left & !(1 << k)))
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Index of the entry of three targets outside a set.
-    fn state(&self, path: [usize; 3], set: usize) -> usize {
+    /// Index of the entry of three different targets outside a set: each is counted among those
+    /// that neither the set nor the triple has had before.
+    fn state(&self, [h, i, j]: [usize; 3], set: usize) -> usize {
         let others = self.legs.table.targets() - set.count_ones() as usize;
-        let rank = |target: usize| target - (set & ((1 << target) - 1)).count_ones() as usize;
-        path.into_iter()
-            .fold(0, |at, target| at * others + rank(target))
+        let rank = |target: usize, taken: usize| {
+            target - (taken & ((1 << target) - 1)).count_ones() as usize
+        };
+        let first = rank(h, set);
+        let second = rank(i, set | 1 << h);
+        let third = rank(j, set | 1 << h | 1 << i);
+        (first * (others - 1) + second) * (others - 2) + third
     }
 
     /// The entries of a set, from those of smaller sets.
-    fn filled(&self, set: usize) -> Box<[f32]> {
+    fn filled(&self, set: usize) -> RoundedDown {
         let targets = self.legs.table.targets();
         let next = self.admitted.next(set);
         let others: Vec<usize> = members(!set & ((1 << targets) - 1)).collect();
-        let mut rest = vec![f32::INFINITY; others.len().pow(3)].into_boxed_slice();
+        let count = others.len() * (others.len() - 1) * (others.len() - 2);
+        let mut rest = vec![f64::INFINITY; count];
         for &i in &others {
             for &j in others.iter().filter(|&&j| j != i) {
                 let mut after = [f64::INFINITY; MAX_EXACT_TARGETS];
@@ -207,25 +214,10 @@ impl LagrangianPaths {
                     after[k] = self.after([i, j, k], set & !(1 << k));
                 }
                 for &h in others.iter().filter(|&&h| h != i && h != j) {
-                    let least = least_sum(self.legs.row([h, i, j]), &after);
-                    rest[self.state([h, i, j], set)] = below(least);
+                    rest[self.state([h, i, j], set)] = least_sum(self.legs.row([h, i, j]), &after);
                 }
             }
         }
-        rest
-    }
-}
-
-/// The greatest single-precision number that is not above the given one.
-fn below(value: f64) -> f32 {
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "rounding up is corrected below"
-    )]
-    let near = value as f32;
-    if f64::from(near) > value {
-        near.next_down()
-    } else {
-        near
+        RoundedDown::new(&rest)
     }
 }

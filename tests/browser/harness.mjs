@@ -17,6 +17,14 @@ export function fixture(name) {
   return JSON.parse(readFileSync(join(ROOT, "tests/fixtures", `${name}.json`), "utf8"));
 }
 
+/** A phone held upright. */
+export const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+
+/** The first stars of the catalogue, with its head. */
+export function stars(count) {
+  return readFileSync(join(ROOT, "tests/fixtures/bright-stars.csv"), "utf8").split("\n").slice(0, count + 1).join("\n");
+}
+
 /** Throws with a message unless something holds. */
 export function check(holds, message) {
   if (!holds) throw new Error(message);

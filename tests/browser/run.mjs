@@ -6,20 +6,21 @@ import { compare } from "./compare.mjs";
 import { desk } from "./desk.mjs";
 import { deskModules } from "./desk-modules.mjs";
 import { details } from "./details.mjs";
+import { fromBlank } from "./from-blank.mjs";
 import { openBrowser, startService } from "./harness.mjs";
 import { hostile } from "./hostile.mjs";
 import { journeys } from "./journeys.mjs";
+import { longWork } from "./long-work.mjs";
 import { looks } from "./looks.mjs";
 import { matrix } from "./matrix.mjs";
 import { modules } from "./modules.mjs";
 import { order } from "./order.mjs";
 import { pictures } from "./pictures.mjs";
-import { planner } from "./planner.mjs";
 import { studies } from "./studies.mjs";
 import { units } from "./units.mjs";
 import { violations } from "./violations.mjs";
 
-const PARTS = { modules, hostile, journeys, desk, "desk-modules": deskModules, answers, details, body, units, compare, matrix, order, pictures, planner, studies, violations, looks };
+const PARTS = { modules, hostile, journeys, "from-blank": fromBlank, desk, "desk-modules": deskModules, answers, details, body, units, compare, matrix, order, pictures, "long-work": longWork, studies, violations, looks };
 
 const asked = process.argv.slice(2);
 const unknown = asked.filter((name) => !(name in PARTS));

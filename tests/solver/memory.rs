@@ -13,8 +13,8 @@ const FREE: RateConditions = RateConditions::ZeroAboutZ;
 const MEASURED: [(Region, RateConditions, usize, f64, f64); 18] = [
     (Region::Strip, FREE, 12, 2.4, 8.0),
     (Region::Strip, FREE, 14, 6.8, 8.0),
-    (Region::Strip, FREE, 16, 23.5, 9.0),
-    (Region::Sphere, FREE, 16, 12.2, 17.0),
+    (Region::Strip, FREE, 16, 23.5, 4.0),
+    (Region::Sphere, FREE, 16, 12.2, 8.0),
     (Region::Sphere, AT_REST, 16, 9.3, 8.0),
     (Region::Sphere, AT_REST, 18, 37.9, 4.0),
     (Region::Strip, FREE, 18, 80.8, 4.0),

@@ -74,6 +74,30 @@ async function quarterTurn({ browser, service, must }) {
     check(lines.length === 5, `${lines.length} plots`);
     return values.join(" ");
   });
+  await must("the points of every plot stand at the moment, between samples too", async () => {
+    const moment = await page.evaluate(() => {
+      const slider = document.getElementById("moment");
+      const between = 0.4 * Number(slider.max);
+      slider.value = String(between);
+      slider.dispatchEvent(new Event("input"));
+      return Number(slider.value);
+    });
+    const samples = slew.trajectory.states.map((state) => state.time_s);
+    check(samples.every((time) => Math.abs(time - moment) > 0.2), "the moment is that of a sample");
+    const away = await eventually(async () => {
+      const found = await page.locator(".timelines .uplot").evaluateAll((all) => all.flatMap((plot) => {
+        const line = plot.querySelector(".u-cursor-x").getBoundingClientRect().right;
+        return [...plot.querySelectorAll(".u-cursor-pt")].map((point) => {
+          const { left, right } = point.getBoundingClientRect();
+          return Math.abs((left + right) / 2 - line);
+        });
+      }));
+      check(found.length === 15, `${found.length} points`);
+      check(found.every((distance) => distance < 1.5), `${Math.max(...found).toFixed(1)} px away`);
+      return Math.max(...found);
+    });
+    return `at most ${away.toFixed(1)} px away`;
+  });
   await must("its tables have what the plots show", async () => {
     for (const name of ["Directions", "Samples", "Hamiltonian", "Switching functions"]) {
       await page.locator("summary", { hasText: `${name} as a table` }).click();

@@ -5,7 +5,7 @@ import { fixed, significant } from "../format.js";
 import { valueOf } from "./groups.js";
 import { beyond, decorate, reach } from "./limits.js";
 import { curve } from "./palette.js";
-import { plot } from "./plot.js";
+import { plot, POINT } from "./plot.js";
 
 const HEIGHT = 168;
 /** A finger that moves farther than this scrolls, px. */
@@ -60,6 +60,7 @@ function options(flight, group, one, { cursor, charts, lane, clock }) {
     scales: { x: { time: false }, y: { range: () => range } },
     series: [{}, ...series],
     axes: [clock ? clockAxis(clock) : { values: (_, ticks) => ticks.map((tick) => `${tick} s`) }, { values: ticksOf }],
+    cursor: { points: { bbox: (drawn, index) => pointAt(drawn, group, index - 1) } },
     hooks: {
       ...decorate(flight, group),
       setCursor: [(drawn) => {
@@ -86,6 +87,14 @@ function options(flight, group, one, { cursor, charts, lane, clock }) {
       }],
     },
   };
+}
+
+/** The box of the point of a curve at the cursor. The library would put it at the nearest sample. */
+function pointAt(drawn, group, which) {
+  const { left } = drawn.cursor;
+  const value = valueOf(group, which, drawn.posToVal(left, "x"));
+  const top = value === null ? -drawn.height : drawn.valToPos(value, "y");
+  return { left: left - POINT / 2, top: top - POINT / 2, width: POINT, height: POINT };
 }
 
 /** An axis with marks at full times of day. */

@@ -11,6 +11,8 @@ const HEIGHT = 210;
 const LOGARITHMIC = 3;
 /** From this ratio of the largest to the smallest value on, an axis is logarithmic. */
 const DECADES = 20;
+/** An axis of more decades than this has a number at every second one. */
+const MOST_DECADES = 6;
 /** Room beside the values: a share of their range, and on a logarithmic axis of their ratio. */
 const ROOM = 0.08;
 
@@ -116,6 +118,12 @@ function marks({ distr, range: [low, high] }) {
   const splits = decades.flatMap((decade) => [1, 2, 3, 4, 5, 6, 7, 8, 9].map((digit) => digit * decade))
     .filter((value) => value >= low && value <= high);
   const numbered = high / low < 100 ? ["1", "2", "5"] : ["1"];
-  const values = () => splits.map((value) => (numbered.includes(value.toExponential(0)[0]) ? text(value) : ""));
+  // Numbers of many decades would touch each other: every second one then, with 1 among them.
+  const every = decades.length > MOST_DECADES ? 2 : 1;
+  const isNumbered = (value) => {
+    const [digit, exponent] = value.toExponential(0).split("e");
+    return numbered.includes(digit) && Number(exponent) % every === 0;
+  };
+  const values = () => splits.map((value) => (isNumbered(value) ? text(value) : ""));
   return { splits: () => splits, filter: (_, all) => all, values };
 }

@@ -10,6 +10,8 @@ import { colour, letters, onTheme } from "./palette.js";
 const LEFT = 62;
 const RIGHT = 14;
 const FONT = 12;
+/** Size of the points at the cursor, px. */
+export const POINT = 6;
 /** Height of the horizontal axis, px. */
 const BELOW = 28;
 
@@ -34,8 +36,8 @@ export function plot(place, options, data, signal) {
       height: options.height * larger,
       cursor: {
         y: false,
-        points: { size: 6 },
         ...options.cursor,
+        points: { size: POINT, ...options.cursor?.points },
         drag: { x: true, y: false, ...options.cursor?.drag },
       },
       axes: [axis({ size: BELOW * larger, space: 50 * larger, ...x }), axis({ size: LEFT * larger, ...y })],

@@ -1,11 +1,14 @@
 //! Execution of queued jobs: a few at once, each in its turn, on the solver's own threads.
 
+mod active;
+mod desk;
 pub(crate) mod leg_cache;
 pub(crate) mod leg_import;
 mod leg_snapshot;
 mod leg_table;
 mod memory;
 mod metrics;
+mod pace;
 mod progress;
 pub(crate) mod retention;
 pub(crate) mod segments;
@@ -18,12 +21,14 @@ pub(crate) use metrics::JobMetrics;
 pub(crate) use worker::Worker;
 
 use crate::base::clock::now_us;
+use crate::jobs::active::ActiveJobs;
+use crate::jobs::desk::Desk;
 use crate::jobs::leg_cache::LegCache;
 use crate::jobs::leg_snapshot::LegsAtOnce;
 use crate::jobs::memory::JobMemory;
 use crate::store::{JobRow, Notice, QueueLimits, Store, StoreError, Submission, Submitted};
 use slewplan_solver::run::stop::StopSignal;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 use tokio::runtime::Handle;
 use tokio::sync::{Notify, watch};
 
@@ -38,17 +43,11 @@ struct SharedJobs {
     changes: watch::Sender<u64>,
     /// Notified when a job has been queued.
     queued: Notify,
-    active: Mutex<Vec<ActiveJob>>,
+    active: ActiveJobs,
+    desk: Desk,
     queue: QueueLimits,
     memory: JobMemory,
     metrics: Arc<JobMetrics>,
-}
-
-#[derive(Debug)]
-struct ActiveJob {
-    id: String,
-    fence: i64,
-    stop: StopSignal,
 }
 
 impl Jobs {
@@ -58,7 +57,8 @@ impl Jobs {
             store,
             changes: watch::Sender::new(0),
             queued: Notify::new(),
-            active: Mutex::default(),
+            active: ActiveJobs::default(),
+            desk: Desk::default(),
             queue,
             memory: JobMemory::new(memory),
             metrics: Arc::default(),
@@ -130,17 +130,17 @@ impl Jobs {
     /// Asks a running job to finish with its best plan so far.
     pub(crate) async fn stop(&self, id: &str) -> Result<Option<JobRow>, StoreError> {
         let job = self.store().request_stop(id, now_us()).await?;
-        self.with_active(id, StopSignal::request);
+        self.0.active.request(id, StopSignal::request);
         self.store().tell(Notice::Requested(id.to_owned()));
         Ok(job)
     }
 
     /// Cancels a job. Its threads are freed even when the request cannot be recorded.
     pub(crate) async fn cancel(&self, id: &str) -> Result<Option<JobRow>, StoreError> {
-        self.with_active(id, StopSignal::cancel);
+        self.0.active.request(id, StopSignal::cancel);
         let job = self.store().request_cancel(id, now_us()).await?;
         // The job may have begun in between.
-        self.with_active(id, StopSignal::cancel);
+        self.0.active.request(id, StopSignal::cancel);
         self.store().tell(Notice::Requested(id.to_owned()));
         if job.as_ref().is_some_and(|job| job.finished_us.is_some()) {
             // A job that waited for another attempt leaves the segments of the last one.
@@ -153,25 +153,14 @@ impl Jobs {
     /// Deletes a job; a running one is cancelled first.
     pub(crate) async fn delete(&self, id: &str) -> Result<bool, StoreError> {
         let deleted = self.store().delete(id).await?;
-        self.with_active(id, StopSignal::cancel);
+        self.0.active.request(id, StopSignal::cancel);
         self.store().tell(Notice::Requested(id.to_owned()));
         self.changed();
         Ok(deleted)
     }
 
-    fn with_active(&self, id: &str, act: impl Fn(&StopSignal)) {
-        for active in self.active().iter().filter(|active| active.id == id) {
-            act(&active.stop);
-        }
-    }
-
-    /// The jobs that this process works on.
-    fn active(&self) -> MutexGuard<'_, Vec<ActiveJob>> {
-        self.0.active.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Number of jobs that this process works on.
     pub(crate) fn running_here(&self) -> usize {
-        self.active().len()
+        self.0.active.ids().len()
     }
 }

@@ -56,8 +56,9 @@ pub(crate) struct ServiceSettings {
 const SOLVER_NICENESS: i32 = 10;
 /// Longest wait for blocking threads after the shutdown.
 const RUNTIME_SHUTDOWN: Duration = Duration::from_millis(500);
-/// Interval at which a service without keys looks for a first one.
+/// Interval at which a service without keys looks for a first one; where it is told of one, behind that.
 const KEY_POLL: Duration = Duration::from_millis(500);
+const SHARED_KEY_POLL: Duration = Duration::from_secs(10);
 /// Threads for requests, which do no computing.
 const REQUEST_THREADS: usize = 2;
 
@@ -192,7 +193,12 @@ async fn access(settings: &ServiceSettings, store: &Store) -> Result<Access, Ser
 /// Requires keys as soon as there is one.
 async fn await_first_key(store: Store, access: Access) {
     while !access.asks_for_keys() {
-        tokio::time::sleep(KEY_POLL).await;
+        if store.is_shared() {
+            // After the wait or a notice.
+            let _ = tokio::time::timeout(SHARED_KEY_POLL, store.told_of_keys()).await;
+        } else {
+            tokio::time::sleep(KEY_POLL).await;
+        }
         match store.keys().await {
             Ok(keys) if keys.is_empty() => {}
             Ok(_) => {

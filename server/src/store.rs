@@ -7,13 +7,17 @@
 mod row;
 #[macro_use]
 mod rows;
+#[macro_use]
+mod held;
 
 mod address;
+mod claims;
 mod copy;
 mod database;
 mod ends;
 mod error;
 mod events;
+mod exchange;
 mod jobs;
 mod keys;
 mod leases;
@@ -35,14 +39,16 @@ mod tests;
 mod writing;
 
 pub(crate) use address::DatabaseAddress;
+pub(crate) use claims::{Claim, Lease, MemoryRoom};
 pub(crate) use copy::{Copied, CopyLock, copy};
 pub(crate) use database::sqlite::{DatabaseLock, backup};
 pub(crate) use ends::{EndCode, Ended};
 pub(crate) use error::StoreError;
 pub(crate) use events::{EventRow, FormatEvent};
+pub(crate) use exchange::{Exchange, Exchanged, JobEnd};
 pub(crate) use jobs::{Listing, PRIORITIES, QueueLimits, Submission, Submitted};
 pub(crate) use keys::{KeyRow, NewKey, Possessions};
-pub(crate) use leases::{Lease, MemoryRoom, OtherProcesses};
+pub(crate) use leases::OtherProcesses;
 pub(crate) use leg_tables::{LegCounts, NewTablePart};
 pub(crate) use leg_times::LegSnapshot;
 pub(crate) use legs::{CachedLegRow, LegFilter, NewLeg, key as leg_key};

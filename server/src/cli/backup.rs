@@ -1,5 +1,6 @@
 //! `slewplan backup`: copies the database while the service uses it.
 
+use super::database::DatabaseOption;
 use super::{Exit, Failure, runtime};
 use crate::service::ServiceError;
 use crate::store::{self, DatabaseAddress};
@@ -10,19 +11,13 @@ use std::path::PathBuf;
 pub(super) struct BackupArguments {
     /// File of the copy, which appears complete or not at all
     copy: PathBuf,
-    /// The database of the service
-    #[arg(
-        long,
-        env = "SLEWPLAN_DATABASE",
-        value_name = "FILE",
-        default_value = "slewplan.db"
-    )]
-    database: DatabaseAddress,
+    #[command(flatten)]
+    database: DatabaseOption,
 }
 
 /// Copies the database.
 pub(super) fn run(arguments: &BackupArguments) -> Result<Exit, Failure> {
-    let DatabaseAddress::File(database) = &arguments.database else {
+    let DatabaseAddress::File(database) = &arguments.database.database else {
         return Err(Failure::Setting {
             name: "--database",
             what: "a database of Postgres is copied by its own tools, such as pg_dump".into(),

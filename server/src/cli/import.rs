@@ -1,5 +1,6 @@
 //! `slewplan import`: imports legs that were solved elsewhere into a database.
 
+use super::database::DatabaseOption;
 use super::failure::Failure;
 use super::solve::{Threads, start_pool};
 use super::{Exit, input, output, runtime};
@@ -7,7 +8,6 @@ use crate::cli::signals;
 use crate::documents::leg_import::LegImportDocument;
 use crate::jobs::leg_import;
 use crate::service::ServiceError;
-use crate::store::DatabaseAddress;
 use slewplan_solver::run::stop::StopSignal;
 use std::path::PathBuf;
 
@@ -16,14 +16,8 @@ use std::path::PathBuf;
 pub(super) struct ImportArguments {
     /// A file of legs --trajectories, whole or a shard, - for standard input
     file: PathBuf,
-    /// The database of the service, which may be running
-    #[arg(
-        long,
-        env = "SLEWPLAN_DATABASE",
-        value_name = "FILE|URL",
-        default_value = "slewplan.db"
-    )]
-    database: DatabaseAddress,
+    #[command(flatten)]
+    database: DatabaseOption,
     #[command(flatten)]
     threads: Threads,
 }
@@ -41,7 +35,7 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<Exit, Failure> {
     let Some(checked) = import.check(&pool, &stop) else {
         return Ok(received.exit_code().map_or(Exit::Failed, Exit::Signalled));
     };
-    let counts = runtime::with_store(&arguments.database, async |store| {
+    let counts = runtime::with_store(&arguments.database.database, async |store| {
         Ok(checked.store(store).await.map_err(ServiceError::from)?)
     })?;
     let document = LegImportDocument::new(counts, &checked.refused);

@@ -1,10 +1,11 @@
 //! `slewplan keys`: makes, lists and revokes keys of the service.
 
+use super::database::DatabaseOption;
 use super::{Exit, Failure, output, runtime};
 use crate::base::access::{FreshKey, Scope, Scopes};
 use crate::base::clock::{now_us, rfc3339};
 use crate::service::ServiceError;
-use crate::store::{DatabaseAddress, KeyRow, NewKey, Possessions, Store};
+use crate::store::{KeyRow, NewKey, Possessions, Store};
 use std::fmt::Write;
 
 /// Microseconds of a day.
@@ -18,15 +19,8 @@ const NOTHING: Possessions = Possessions {
 /// Arguments of `keys`.
 #[derive(Debug, clap::Args)]
 pub(super) struct KeysArguments {
-    /// The database of the service
-    #[arg(
-        long,
-        global = true,
-        env = "SLEWPLAN_DATABASE",
-        value_name = "FILE|URL",
-        default_value = "slewplan.db"
-    )]
-    database: DatabaseAddress,
+    #[command(flatten)]
+    database: DatabaseOption,
     #[command(subcommand)]
     action: Action,
 }
@@ -61,7 +55,7 @@ struct KeyOrder {
 
 /// Makes, lists or revokes keys.
 pub(super) fn run(arguments: &KeysArguments) -> Result<Exit, Failure> {
-    let database = &arguments.database;
+    let database = &arguments.database.database;
     match &arguments.action {
         Action::Create(order) => {
             runtime::with_store(database, async |store| create(store, order).await)

@@ -1,6 +1,7 @@
 //! `slewplan legs`: the table of leg times, whole, as a shard, or merged from shards.
 
 use super::answer::AnswerOptions;
+use super::database::LegDatabaseOption;
 use super::failure::Failure;
 use super::remembered::CommandLegCache;
 use super::shard::ShardArgument;
@@ -14,7 +15,6 @@ use crate::documents::leg_rows::LegAnswerDocument;
 use crate::documents::legs::{LegTable, LegTableDocument};
 use crate::render::leg_table::{TableForm, TableHead, TableWriter};
 use crate::render::report;
-use crate::store::DatabaseAddress;
 use clap::ValueEnum;
 use recorder::Recorder;
 use slewplan_solver::model::scenario::Scenario;
@@ -49,9 +49,8 @@ pub(super) struct LegsArguments {
     /// Write the rows in this form; only json can be merged and imported
     #[arg(long, value_enum, default_value_t = TableForm::Json, conflicts_with = "trajectories")]
     format: TableForm,
-    /// Read known legs from this database of the service, and store new ones in it
-    #[arg(long, value_name = "FILE|URL")]
-    database: Option<DatabaseAddress>,
+    #[command(flatten)]
+    database: LegDatabaseOption,
     #[command(flatten)]
     answer: AnswerOptions,
     #[command(flatten)]
@@ -155,7 +154,7 @@ fn solve(
     let stop = StopSignal::new();
     let received = signals::listen(&stop).map_err(Failure::Signals)?;
     let observer = progress::observer(arguments.progress, scenario.options().time_limit_s);
-    let database = arguments.database.as_ref();
+    let database = arguments.database.database.as_ref();
     let remembered = database.map(CommandLegCache::open).transpose()?;
     let legs = remembered.as_ref();
     let legs = legs.map_or(&NoStore as &dyn LegStore, CommandLegCache::legs);

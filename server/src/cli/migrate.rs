@@ -1,5 +1,6 @@
 //! `slewplan migrate`: brings the schema of a database up to date, for roles that may only use it.
 
+use super::database::DatabaseOption;
 use super::{Exit, Failure, output, runtime};
 use crate::service::ServiceError;
 use crate::store::DatabaseAddress;
@@ -7,14 +8,8 @@ use crate::store::DatabaseAddress;
 /// Arguments of `migrate`.
 #[derive(Debug, clap::Args)]
 pub(super) struct MigrateArguments {
-    /// The database, as a role that may create tables in it
-    #[arg(
-        long,
-        env = "SLEWPLAN_DATABASE",
-        value_name = "FILE|URL",
-        default_value = "slewplan.db"
-    )]
-    database: DatabaseAddress,
+    #[command(flatten)]
+    database: DatabaseOption,
     /// Role of a Postgres server that services and workers connect as: it gets what they need, and no
     /// right to change the schema
     #[arg(long, env = "SLEWPLAN_GRANT_TO", value_name = "ROLE")]
@@ -24,6 +19,7 @@ pub(super) struct MigrateArguments {
 /// Migrates the database.
 pub(super) fn run(arguments: &MigrateArguments) -> Result<Exit, Failure> {
     let MigrateArguments { database, grant_to } = arguments;
+    let database = &database.database;
     if grant_to.is_some() && matches!(database, DatabaseAddress::File(_)) {
         return Err(Failure::Setting {
             name: "--grant-to",

@@ -1,6 +1,7 @@
 //! `slewplan serve`: runs the service.
 
 use super::Exit;
+use super::database::DatabaseOption;
 use super::failure::Failure;
 use super::log::LogOptions;
 use super::output;
@@ -19,14 +20,8 @@ pub(super) struct ServeArguments {
     /// Address to listen on; port 0 stands for any free port
     #[arg(long, env = "SLEWPLAN_LISTEN", default_value = "127.0.0.1:8080")]
     listen: SocketAddr,
-    /// Database: a file, created when it does not exist, or the URL of one on a Postgres server
-    #[arg(
-        long,
-        env = "SLEWPLAN_DATABASE",
-        value_name = "FILE|URL",
-        default_value = "slewplan.db"
-    )]
-    database: DatabaseAddress,
+    #[command(flatten)]
+    database: DatabaseOption,
     #[command(flatten)]
     worker: WorkerOptions,
     /// Maximum size of a request body, bytes
@@ -87,7 +82,7 @@ pub(super) struct ServeArguments {
 
 /// Serves until a signal ends it.
 pub(super) fn run(arguments: &ServeArguments) -> Result<Exit, Failure> {
-    let shared = matches!(arguments.database, DatabaseAddress::Postgres(_));
+    let shared = matches!(arguments.database.database, DatabaseAddress::Postgres(_));
     if arguments.no_worker && !shared {
         return Err(Failure::Setting {
             name: "--no-worker",
@@ -97,7 +92,7 @@ pub(super) fn run(arguments: &ServeArguments) -> Result<Exit, Failure> {
     arguments.log.start()?;
     let settings = ServiceSettings {
         listen: arguments.listen,
-        database: arguments.database.clone(),
+        database: arguments.database.database.clone(),
         database_connections: arguments.worker.database_connections(),
         threads: arguments.worker.threads(),
         jobs: if arguments.no_worker {

@@ -1,6 +1,7 @@
 //! `slewplan work`: solves the jobs of a shared database.
 
 use super::Exit;
+use super::database::DatabaseOption;
 use super::failure::Failure;
 use super::log::LogOptions;
 use super::output;
@@ -12,9 +13,8 @@ use std::net::SocketAddr;
 /// Arguments of `work`.
 #[derive(Debug, clap::Args)]
 pub(super) struct WorkArguments {
-    /// Database on a Postgres server, the same as that of the services
-    #[arg(long, env = "SLEWPLAN_DATABASE", value_name = "URL")]
-    database: DatabaseAddress,
+    #[command(flatten)]
+    database: DatabaseOption,
     #[command(flatten)]
     worker: WorkerOptions,
     /// Address that answers /metrics, /health/live and /health/ready [default: none]
@@ -26,7 +26,7 @@ pub(super) struct WorkArguments {
 
 /// Solves until a signal ends it.
 pub(super) fn run(arguments: &WorkArguments) -> Result<Exit, Failure> {
-    if let DatabaseAddress::File(_) = &arguments.database {
+    if let DatabaseAddress::File(_) = &arguments.database.database {
         return Err(Failure::Setting {
             name: "--database",
             what: "a file is for one service, which solves its jobs itself; several processes \
@@ -36,7 +36,7 @@ pub(super) fn run(arguments: &WorkArguments) -> Result<Exit, Failure> {
     }
     arguments.log.start()?;
     let settings = WorkSettings {
-        database: arguments.database.clone(),
+        database: arguments.database.database.clone(),
         metrics: arguments.metrics,
         database_connections: arguments.worker.database_connections(),
         threads: arguments.worker.threads(),

@@ -10,8 +10,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use tokio::runtime::Handle;
 
-/// Number of legs per transaction.
-const BATCH: usize = 64;
+/// Number of legs that are looked up or written at once.
+pub(super) const BATCH: usize = 64;
 /// Time after which a database that was away is asked again.
 const AWAY: Duration = Duration::from_secs(5);
 /// Maximum number of legs that wait for it, some 16 MB.
@@ -72,6 +72,16 @@ impl Unwritten {
         }
     }
 
+    /// Takes them, to be stored with the end of their job; writes them where there are many. The solve has
+    /// ended.
+    pub(super) async fn take(&self) -> Vec<NewLeg> {
+        if self.legs().len() > BATCH {
+            self.write().await;
+        }
+        let _writing = self.writing.lock().await;
+        std::mem::take(&mut *self.legs())
+    }
+
     /// Whether the database was away a moment ago.
     fn is_away(&self) -> bool {
         let until = *self
@@ -125,17 +135,25 @@ impl LegCache {
 
 impl LegStore for LegCache {
     fn get(&self, identity: &str) -> Option<StoredLeg> {
+        self.get_all(&[identity]).pop()?
+    }
+
+    fn get_all(&self, identities: &[&str]) -> Vec<Option<StoredLeg>> {
         if self.unwritten.is_away() {
-            return None;
+            return vec![None; identities.len()];
         }
-        let found = self.runtime.block_on(self.store.known_leg(identity));
-        let leg = found.unwrap_or_else(|error| {
-            tracing::warn!(%error, "a leg cannot be looked up and is solved again");
+        let found = self.runtime.block_on(self.store.known_legs(identities));
+        let legs = found.unwrap_or_else(|error| {
+            tracing::warn!(%error, "legs cannot be looked up and are solved again");
             self.unwritten.note(&error);
-            None
+            vec![None; identities.len()]
         });
-        self.metrics.looked_up(std::slice::from_ref(&leg));
-        leg
+        self.metrics.looked_up(&legs);
+        legs
+    }
+
+    fn batch(&self) -> usize {
+        BATCH
     }
 
     fn times(&self, identities: &[&str]) -> Vec<Option<StoredTime>> {

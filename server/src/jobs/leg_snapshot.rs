@@ -1,5 +1,6 @@
 //! Leg times of one moment, for a table that is only looked up.
 
+use crate::jobs::leg_cache::BATCH;
 use crate::jobs::metrics::JobMetrics;
 use crate::store::{LegSnapshot, Store, StoreError};
 use slewplan_solver::tour::legs::{LegStore, StoredLeg, StoredTime};
@@ -38,11 +39,19 @@ impl LegsAtOnce {
 impl LegStore for LegsAtOnce {
     /// A leg with its motion, as it is now: a stored leg is only ever replaced by its equal.
     fn get(&self, identity: &str) -> Option<StoredLeg> {
-        let found = self.runtime.block_on(self.store.known_leg(identity));
+        self.get_all(&[identity]).pop()?
+    }
+
+    fn get_all(&self, identities: &[&str]) -> Vec<Option<StoredLeg>> {
+        let found = self.runtime.block_on(self.store.known_legs(identities));
         found.unwrap_or_else(|error| {
-            tracing::warn!(%error, "a leg cannot be looked up");
-            None
+            tracing::warn!(%error, "legs cannot be looked up");
+            vec![None; identities.len()]
         })
+    }
+
+    fn batch(&self) -> usize {
+        BATCH
     }
 
     fn times(&self, identities: &[&str]) -> Vec<Option<StoredTime>> {

@@ -114,8 +114,11 @@ impl MemoryGuard {
         let (memory, number) = (self.memory.clone(), self.number);
         let exceeded = Arc::clone(&self.exceeded);
         let watching = runtime.spawn(async move {
-            while !memory.is_too_much(number) {
+            loop {
                 tokio::time::sleep(INTERVAL).await;
+                if memory.is_too_much(number) {
+                    break;
+                }
             }
             exceeded.store(true, Ordering::SeqCst);
             stop.request();

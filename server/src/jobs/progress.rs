@@ -1,6 +1,7 @@
 //! Records what the solver's observer reports from any of its threads as events of the job.
 
 use super::Jobs;
+use super::pace::TINY;
 use crate::base::clock::now_us;
 use crate::base::contradictions;
 use crate::documents;
@@ -10,6 +11,7 @@ use slewplan_solver::model::plan::Plan;
 use slewplan_solver::model::problem::Problem;
 use slewplan_solver::run::contradiction::Contradiction;
 use slewplan_solver::run::progress::{Observer, Progress};
+use slewplan_solver::run::stop::StopSignal;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::watch;
@@ -78,9 +80,64 @@ impl Observer for ReportingObserver<'_> {
     }
 }
 
+/// What the recorder leaves to be stored with the end of the job.
+#[derive(Debug)]
+pub(super) struct Recorded {
+    /// Whether the begin of the job is stored.
+    pub(super) begin_is_stored: bool,
+    /// How the job stood last, if that is not stored.
+    pub(super) progress: Option<ProgressRow>,
+}
+
+/// Records the begin of a job, unless that is stored, when it turns out to take its time, and its reports
+/// until the reporter is dropped or the lease is lost; the lease is the job at its begin.
+pub(super) async fn record(
+    jobs: Jobs,
+    lease: JobRow,
+    mut begin_is_stored: bool,
+    legs: Unwritten,
+    stop: StopSignal,
+    reports: watch::Receiver<ProgressReport>,
+) -> Recorded {
+    while !begin_is_stored {
+        if ends_within(TINY, &reports).await {
+            let progress = reports.borrow().progress.as_ref().map(row);
+            return Recorded {
+                begin_is_stored,
+                progress,
+            };
+        }
+        match jobs.store_begin(&lease).await {
+            Ok(true) => begin_is_stored = true,
+            Ok(false) => {
+                stop.cancel();
+                break;
+            }
+            Err(error) => {
+                tracing::warn!(job_id = lease.id, %error, "the begin of a job is not recorded yet");
+                tokio::time::sleep(PAUSE).await;
+            }
+        }
+    }
+    record_reports(jobs, lease, legs, reports).await;
+    Recorded {
+        begin_is_stored,
+        progress: None,
+    }
+}
+
+/// Whether the reporter is dropped within a time. Returns at once when it is, because the end of the job
+/// waits for this.
+async fn ends_within(time: Duration, reports: &watch::Receiver<ProgressReport>) -> bool {
+    let mut reports = reports.clone();
+    tokio::time::timeout(time, reports.wait_for(|_| false))
+        .await
+        .is_ok()
+}
+
 /// Records reports until the reporter is dropped or the lease is lost. The legs that a report rests
 /// on are stored before it, so that another attempt does not solve them again.
-pub(super) async fn record(
+async fn record_reports(
     jobs: Jobs,
     lease: JobRow,
     legs: Unwritten,
@@ -116,8 +173,7 @@ pub(super) async fn record(
         if !open {
             return;
         }
-        // Returns at once when the reporter is dropped, because the end of the job waits for this.
-        let _ = tokio::time::timeout(PAUSE, reports.clone().wait_for(|_| false)).await;
+        ends_within(PAUSE, &reports).await;
     }
 }
 

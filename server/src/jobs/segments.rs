@@ -70,7 +70,12 @@ impl SharedSegments {
 impl SegmentCache {
     /// The segments of a lease, for threads outside of the runtime.
     pub(super) fn new(store: Store, runtime: &Handle, lease: JobRow) -> Self {
-        let known = runtime.block_on(store.segments(lease.sequence));
+        let known = if lease.fence > 1 {
+            runtime.block_on(store.segments(lease.sequence))
+        } else {
+            // Nobody has worked on it before.
+            Ok(Vec::new())
+        };
         let known = known.unwrap_or_else(|error| {
             tracing::warn!(%error, "segments of earlier attempts cannot be read");
             Vec::new()

@@ -32,12 +32,16 @@ impl Jobs {
         match notice {
             Notice::Queued => self.0.queued.notify_one(),
             Notice::Changed => self.wake(),
-            Notice::Requested(id) => self.apply_requests_soon(id),
+            Notice::Requested(id) => {
+                // Remembered, in case the job begins here a moment later.
+                self.0.active.request(&id, |_| {});
+                self.apply_requests_soon(id);
+            }
+            Notice::Keys => {}
             Notice::Missed => {
                 self.0.queued.notify_one();
                 self.wake();
-                let ids: Vec<_> = self.active().iter().map(|job| job.id.clone()).collect();
-                for id in ids {
+                for id in self.0.active.ids() {
                     self.apply_requests_soon(id);
                 }
             }
@@ -45,7 +49,7 @@ impl Jobs {
     }
 
     fn apply_requests_soon(&self, id: String) {
-        if self.active().iter().any(|active| active.id == id) {
+        if self.0.active.ids().contains(&id) {
             let jobs = self.clone();
             tokio::spawn(async move { jobs.apply_requests(&id).await });
         }
@@ -56,13 +60,13 @@ impl Jobs {
         match self.store().job(id).await {
             Ok(Some(job)) => {
                 if job.stop_requested_us.is_some() {
-                    self.with_active(id, StopSignal::request);
+                    self.0.active.request(id, StopSignal::request);
                 }
                 if job.cancel_requested_us.is_some() {
-                    self.with_active(id, StopSignal::cancel);
+                    self.0.active.request(id, StopSignal::cancel);
                 }
             }
-            Ok(None) => self.with_active(id, StopSignal::cancel),
+            Ok(None) => self.0.active.request(id, StopSignal::cancel),
             Err(error) => tracing::warn!(job_id = id, %error, "requests cannot be read"),
         }
     }
@@ -77,9 +81,15 @@ async fn take_over(jobs: Jobs, boot_id: String) {
         // What a lost notice said is found now.
         jobs.wake();
         let store = jobs.store();
-        if let Err(error) = store.compare_clocks().await {
-            tracing::warn!(%error, "the clock of the database cannot be read");
-            continue;
+        let standing = match store.compare_clocks().await {
+            Ok(standing) => standing,
+            Err(error) => {
+                tracing::warn!(%error, "the clock of the database cannot be read");
+                continue;
+            }
+        };
+        if standing.jobs_wait {
+            jobs.0.queued.notify_one();
         }
         if last.elapsed() > AWAY {
             patient_until = Instant::now() + LEASE;
@@ -89,6 +99,9 @@ async fn take_over(jobs: Jobs, boot_id: String) {
             if store.check_writable(now_us()).await.is_err() {
                 patient_until = Instant::now() + LEASE;
             }
+            continue;
+        }
+        if !standing.leases_expired {
             continue;
         }
         let lease_now_us = store.lease_clock_us();

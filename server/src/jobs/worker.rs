@@ -1,18 +1,23 @@
 //! The threads that take jobs from the queue of the asynchronous service and solve them, each one job
 //! at a time.
 //!
-//! A thread leases a job, solves it on its pool and records its end. It reaches the database through
+//! A thread leases a job, solves it on its pool and leaves its end on the desk, which stores it with the
+//! next lease. It reaches the database through
 //! the handle of the runtime; nothing is computed on the runtime's threads. The pools share the threads
 //! of the solver, so that every job gets its part.
 
+use super::Jobs;
+use super::desk::{BegunJob, EndedJob};
+use super::leg_cache::LegCache;
 use super::leg_table::{self, TableStore};
 use super::memory::MemoryGuard;
-use super::progress::{Reporter, record};
-use super::segments::{self, SegmentCache};
+use super::progress::{Recorded, Reporter, record};
+use super::segments::SegmentCache;
 use super::solve::{self, JobContext};
-use super::{ActiveJob, Jobs};
 use crate::base::clock::now_us;
-use crate::store::{Ended, JobRow, JobState, Lease, MemoryRoom, Notice, StoreError, Work};
+use crate::store::{
+    Ended, JobEnd, JobRow, JobState, Lease, NewLeg, Notice, ProgressRow, StoreError, Work,
+};
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
 use std::io;
@@ -32,9 +37,11 @@ const PROLONGATION: Duration = Duration::from_secs(2);
 const RETRY: Duration = Duration::from_millis(500);
 /// Interval between two looks at the queue without a notification.
 const POLL: Duration = Duration::from_secs(5);
+/// The same where all processes look every few seconds whether jobs wait.
+const SHARED_POLL: Duration = Duration::from_mins(1);
 /// Time for which a job waits while others, which have room beside the running ones, are begun before
 /// it.
-const PASSED_OVER: Duration = Duration::from_mins(2);
+pub(super) const PASSED_OVER: Duration = Duration::from_mins(2);
 
 /// The threads that solve.
 #[derive(Debug)]
@@ -84,9 +91,7 @@ impl Worker {
     pub(crate) async fn drain(self) {
         self.draining.store(true, Ordering::SeqCst);
         self.jobs.0.queued.notify_waiters();
-        for active in &*self.jobs.active() {
-            active.stop.cancel();
-        }
+        self.jobs.0.active.cancel_all();
         let join = || self.threads.into_iter().map(JoinHandle::join).collect();
         let ended: Result<Vec<_>, _> = tokio::task::spawn_blocking(join).await;
         if !ended.is_ok_and(|ended| ended.iter().all(Result::is_ok)) {
@@ -108,91 +113,92 @@ impl WorkerThread {
     fn run(&self) {
         while !self.draining.load(Ordering::SeqCst) {
             match self.runtime.block_on(self.next()) {
-                Ok(Some((lease, memory))) => self.work_contained(&lease, memory),
+                Ok(Some(begun)) => self.work_contained(begun),
                 Ok(None) => {}
                 Err(error) => {
-                    tracing::error!(%error, "no job can be leased");
+                    tracing::error!(%error, "no job can be leased, and no end recorded");
                     retry_later();
                 }
             }
         }
+        if let Err(error) = self.runtime.block_on(self.jobs.clear_desk()) {
+            tracing::error!(%error, "ends of jobs are not recorded");
+        }
     }
 
-    /// Leases a job, or waits for a notification or the next look at the queue and returns `None`.
-    async fn next(&self) -> Result<Option<(Lease, MemoryGuard)>, StoreError> {
+    /// Begins a job, or waits for a notification or the next look at the queue and returns `None`.
+    async fn next(&self) -> Result<Option<BegunJob>, StoreError> {
         let mut queued = pin!(self.jobs.0.queued.notified());
         // Every job that is queued from here on wakes another of the threads that look.
         queued.as_mut().enable();
         if self.draining.load(Ordering::SeqCst) {
             return Ok(None);
         }
-        let leased = self.leased().await?;
-        if leased.is_none() {
+        let begun = self.jobs.next(&self.boot_id).await?;
+        if begun.is_none() {
+            let shared = self.jobs.store().is_shared();
             // A notification from before this wait ends it at once.
-            let _ = tokio::time::timeout(POLL, queued).await;
+            let _ = tokio::time::timeout(if shared { SHARED_POLL } else { POLL }, queued).await;
         }
-        Ok(leased)
-    }
-
-    /// Leases a job that has room beside the running ones, if one is queued, and takes its memory.
-    async fn leased(&self) -> Result<Option<(Lease, MemoryGuard)>, StoreError> {
-        let (store, memory) = (self.jobs.store(), &self.jobs.0.memory);
-        // Two that look at the same time could both find all memory free.
-        let _alone = memory.admission().await;
-        let now_us = now_us();
-        let room = memory.free().map_or(MemoryRoom::ALL, |bytes| MemoryRoom {
-            bytes: bytes.try_into().unwrap_or(i64::MAX),
-            passed_over_since_us: now_us.saturating_sub(microseconds(PASSED_OVER)),
-        });
-        let lease_until_us = lease_end(store.lease_clock_us());
-        let lease = store.lease(&self.boot_id, lease_until_us, room, now_us);
-        let Some(lease) = lease.await? else {
-            return Ok(None);
-        };
-        let memory = memory.admit(lease.memory_bytes.try_into().unwrap_or(0));
-        if lease.more_wait {
-            self.jobs.0.queued.notify_one();
-        }
-        Ok(Some((lease, memory)))
+        Ok(begun)
     }
 
     /// Works on a job; after a panic the thread goes on to the next.
-    fn work_contained(&self, lease: &Lease, memory: MemoryGuard) {
-        let job = &lease.job;
-        if catch_unwind(AssertUnwindSafe(|| self.work(lease, memory))).is_err() {
-            self.conclude(job, &solve::broken());
-        }
-        let ended = |active: &ActiveJob| active.id == job.id && active.fence == job.fence;
-        self.jobs.active().retain(|active| !ended(active));
-        self.jobs.changed();
+    fn work_contained(&self, begun: BegunJob) {
+        let BegunJob {
+            lease,
+            memory,
+            is_stored,
+        } = begun;
+        let job = if is_stored {
+            lease.job.clone()
+        } else {
+            lease.job.begun(now_us())
+        };
+        let begin = Instant::now();
+        let work = || self.work(&lease, &job, is_stored, memory);
+        let worked = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| Worked {
+            begin_is_stored: is_stored,
+            progress: None,
+            ended: solve::broken(),
+            legs: Vec::new(),
+            leaves_segments: true,
+        });
+        let solved_s = begin.elapsed().as_secs_f64();
+        self.conclude(lease, job, worked, solved_s);
     }
 
-    fn work(&self, lease: &Lease, mut memory: MemoryGuard) {
-        let job = &lease.job;
+    /// Solves a job, which is given as it is at its begin.
+    fn work(
+        &self,
+        lease: &Lease,
+        job: &JobRow,
+        is_stored: bool,
+        mut memory: MemoryGuard,
+    ) -> Worked {
         let span = tracing::info_span!("job", job_id = job.id, attempt = job.attempt);
         let _entered = span.enter();
         tracing::info!(targets = job.targets, "solve begins");
         self.jobs.metrics().begun(job);
-        let begin = Instant::now();
-        self.jobs.changed();
         let stop = StopSignal::new();
-        self.jobs.active().push(ActiveJob {
-            id: job.id.clone(),
-            fence: job.fence,
-            stop: stop.clone(),
-        });
-        self.apply_earlier_requests(job, &stop);
+        self.runtime.block_on(self.jobs.begin_active(job, &stop));
+        if self.draining.load(Ordering::SeqCst) {
+            stop.cancel();
+        }
         let (reporter, reports) = Reporter::new();
         let legs = self.jobs.legs(self.runtime.clone());
-        let recording = record(self.jobs.clone(), job.clone(), legs.unwritten(), reports);
-        let recorder = self.runtime.spawn(recording);
-        let prolonging = self
-            .runtime
-            .spawn(prolong(self.jobs.clone(), job.clone(), stop.clone()));
-        let prolonging = AbortOnDrop(prolonging.abort_handle());
+        let recorder = self.runtime.spawn(record(
+            self.jobs.clone(),
+            job.clone(),
+            is_stored,
+            legs.unwritten(),
+            stop.clone(),
+            reports,
+        ));
+        let prolonging = prolong(self.jobs.clone(), job.clone(), stop.clone());
+        let prolonging = AbortOnDrop(self.runtime.spawn(prolonging).abort_handle());
         let segments = SegmentCache::new(self.jobs.store().clone(), &self.runtime, job.clone());
-        let writing = self.runtime.spawn(segments.writing());
-        let writing = AbortOnDrop(writing.abort_handle());
+        let writing = AbortOnDrop(self.runtime.spawn(segments.writing()).abort_handle());
         memory.watch(&self.runtime, stop.clone());
         let context = JobContext {
             pool: &self.pool,
@@ -202,8 +208,36 @@ impl WorkerThread {
             segments: &segments,
             memory: &memory,
         };
-        let ended = match job.work() {
-            Ok(Work::Plan) => solve::solve(&lease.scenario, &context),
+        let ended = self.solve(lease, job, &legs, &context);
+        drop(memory);
+        drop(reporter);
+        drop((prolonging, writing));
+        let recorded = self.runtime.block_on(recorder).unwrap_or_else(|_| {
+            tracing::error!("progress was not recorded to its end");
+            Recorded {
+                begin_is_stored: is_stored,
+                progress: None,
+            }
+        });
+        Worked {
+            begin_is_stored: recorded.begin_is_stored,
+            progress: recorded.progress,
+            ended,
+            // Stored with the end of the job, so that its observers find them.
+            legs: self.runtime.block_on(legs.unwritten().take()),
+            leaves_segments: segments.leaves_something(),
+        }
+    }
+
+    fn solve(
+        &self,
+        lease: &Lease,
+        job: &JobRow,
+        legs: &LegCache,
+        context: &JobContext<'_>,
+    ) -> Ended {
+        match job.work() {
+            Ok(Work::Plan) => solve::solve(&lease.scenario, context),
             Ok(Work::LegTable) => {
                 let writing = self.runtime.spawn(legs.unwritten().keep_writing());
                 let _writing = AbortOnDrop(writing.abort_handle());
@@ -212,71 +246,70 @@ impl WorkerThread {
                     lease: job,
                     runtime: &self.runtime,
                 };
-                leg_table::solve(&lease.scenario, &context, &parts)
+                leg_table::solve(&lease.scenario, context, &parts)
             }
             Err(error) => solve::without_plan(JobState::Failed, None, &error.to_string()),
-        };
-        drop(memory);
-        // Legs are stored before the end of the job is recorded, so that its observers find them.
-        drop(legs);
-        drop(reporter);
-        drop((prolonging, writing));
-        if self.runtime.block_on(recorder).is_err() {
-            tracing::error!("progress was not recorded to its end");
-        }
-        self.conclude(job, &ended);
-        if segments.leaves_something() {
-            self.runtime
-                .spawn(segments::delete_of_ended_jobs(self.jobs.store().clone()));
-        }
-        let solved_s = begin.elapsed().as_secs_f64();
-        self.jobs.metrics().ended(&ended, solved_s);
-    }
-
-    /// Applies requests that were recorded between the lease and the creation of the stop signal.
-    fn apply_earlier_requests(&self, job: &JobRow, stop: &StopSignal) {
-        self.runtime.block_on(self.jobs.apply_requests(&job.id));
-        if self.draining.load(Ordering::SeqCst) {
-            stop.cancel();
         }
     }
 
-    /// Records the end; tries again until it is recorded, the lease is lost or the service ends.
-    fn conclude(&self, job: &JobRow, ended: &Ended) {
+    /// Leaves the end of a job on the desk. One that was interrupted by the end of the service is given back.
+    fn conclude(&self, lease: Lease, job: JobRow, worked: Worked, solved_s: f64) {
         let interrupted =
-            self.draining.load(Ordering::SeqCst) && ended.state == JobState::Cancelled;
-        loop {
-            let recorded = self.runtime.block_on(async {
-                match self.jobs.store().job(&job.id).await? {
-                    Some(now) if interrupted && now.cancel_requested_us.is_none() => {
-                        self.jobs.store().release(job, now_us()).await
-                    }
-                    _ => self.jobs.store().finish(job, ended, now_us()).await,
-                }
-            });
-            match recorded {
-                Ok(true) => {
-                    tracing::info!(state = ended.state.into_str(), interrupted, "solve ended");
-                    if interrupted {
-                        self.jobs.store().tell(Notice::Queued);
-                    }
-                    return;
-                }
-                Ok(false) => {
-                    tracing::warn!("the job was deleted or taken over; its end is not recorded");
-                    return;
-                }
-                Err(error) if self.draining.load(Ordering::SeqCst) => {
-                    tracing::error!(%error, "the end of the job is not recorded");
-                    return;
-                }
-                Err(error) => {
-                    tracing::error!(%error, "the end of the job cannot be recorded yet");
-                    retry_later();
-                }
+            self.draining.load(Ordering::SeqCst) && worked.ended.state == JobState::Cancelled;
+        self.jobs.0.active.end(&job.id, job.fence);
+        if interrupted && !worked.begin_is_stored {
+            self.jobs.0.desk.put_back(lease);
+            return;
+        }
+        if interrupted && self.runtime.block_on(self.released(&job)) {
+            return;
+        }
+        self.jobs.0.desk.put(EndedJob {
+            end: JobEnd {
+                begun: (!worked.begin_is_stored).then(|| job.clone()),
+                lease: job,
+                progress: worked.progress,
+                ended: worked.ended,
+                at_us: now_us(),
+            },
+            legs: worked.legs,
+            solved_s,
+            leaves_segments: worked.leaves_segments,
+        });
+    }
+
+    /// Gives a job back that has been interrupted, unless it shall be cancelled: `false` then.
+    async fn released(&self, job: &JobRow) -> bool {
+        let store = self.jobs.store();
+        let released = async {
+            match store.job(&job.id).await? {
+                Some(now) if now.cancel_requested_us.is_some() => Ok(false),
+                _ => store.release(job, now_us()).await.map(|_| true),
+            }
+        };
+        match released.await {
+            Ok(true) => {
+                tracing::info!(job_id = job.id, "the job is given back");
+                store.tell(Notice::Queued);
+                self.jobs.changed();
+                true
+            }
+            Ok(false) => false,
+            Err(error) => {
+                tracing::error!(job_id = job.id, %error, "the job is not given back");
+                true
             }
         }
     }
+}
+
+/// What comes of the work on a job.
+struct Worked {
+    begin_is_stored: bool,
+    progress: Option<ProgressRow>,
+    ended: Ended,
+    legs: Vec<NewLeg>,
+    leaves_segments: bool,
 }
 
 /// Aborts a task when it is dropped.
@@ -288,11 +321,11 @@ impl Drop for AbortOnDrop {
     }
 }
 
-fn lease_end(now_us: i64) -> i64 {
+pub(super) fn lease_end(now_us: i64) -> i64 {
     now_us.saturating_add(microseconds(LEASE))
 }
 
-fn microseconds(time: Duration) -> i64 {
+pub(super) fn microseconds(time: Duration) -> i64 {
     i64::try_from(time.as_micros()).unwrap_or(i64::MAX)
 }
 

@@ -1,6 +1,6 @@
 //! The events of jobs, numbered per job.
 
-use super::database::statement::sql;
+use super::database::statement::{Value, sql};
 use super::writing::WriteTransaction;
 use super::{JobRow, Store, StoreError};
 
@@ -24,6 +24,30 @@ pub(crate) type FormatEvent = fn(&JobRow, i64) -> Result<String, StoreError>;
 /// Maximum number of events per read.
 const BATCH: i64 = 256;
 
+/// An event that is not stored yet.
+#[derive(Debug)]
+pub(super) struct NewEvent {
+    job: i64,
+    kind: &'static str,
+    data: String,
+}
+
+impl WriteTransaction {
+    /// The event of a job as it is now.
+    pub(super) fn event(
+        &self,
+        kind: &'static str,
+        job: &JobRow,
+        now_us: i64,
+    ) -> Result<NewEvent, StoreError> {
+        Ok(NewEvent {
+            job: job.sequence,
+            kind,
+            data: (self.format_event)(job, now_us)?,
+        })
+    }
+}
+
 /// Appends an event with the present state of a job.
 pub(super) async fn append(
     transaction: &mut WriteTransaction,
@@ -31,12 +55,29 @@ pub(super) async fn append(
     job: &JobRow,
     now_us: i64,
 ) -> Result<(), StoreError> {
-    let data = (transaction.format_event)(job, now_us)?;
-    sql("INSERT INTO events (job, id, kind, data) \
-         SELECT $1, 1 + coalesce(max(id), 0), $2, $3 FROM events WHERE job = $1")
-    .bind(job.sequence)
-    .bind(kind)
-    .bind(data)
+    let event = transaction.event(kind, job, now_us)?;
+    append_all(transaction, &[event]).await
+}
+
+/// Appends events, those of a job in their order.
+pub(super) async fn append_all(
+    transaction: &mut WriteTransaction,
+    events: &[NewEvent],
+) -> Result<(), StoreError> {
+    if events.is_empty() {
+        return Ok(());
+    }
+    let row = |(number, event): (usize, &NewEvent)| {
+        let of_job = events[..=number].iter().filter(|one| one.job == event.job);
+        let place = i64::try_from(of_job.count()).unwrap_or(i64::MAX);
+        let data = Value::from(event.data.clone());
+        [event.job.into(), place.into(), event.kind.into(), data]
+    };
+    sql("INSERT INTO events (job, id, kind, data) SELECT new.job, \
+         new.place + coalesce((SELECT max(id) FROM events WHERE events.job = new.job), 0), \
+         new.kind, new.data \
+         FROM {rows $1 job bigint, place bigint, kind text, data text} AS new")
+    .rows(events.iter().enumerate().map(row).collect())
     .execute(&mut **transaction)
     .await?;
     Ok(())

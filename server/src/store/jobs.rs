@@ -179,6 +179,7 @@ impl Store {
         let job: Option<JobRow> = sql(concat!(
             "UPDATE jobs SET cancel_requested_us = coalesce(cancel_requested_us, $1), \
              finished_us = CASE state WHEN 'queued' THEN $1 END, \
+             boot_id = CASE state WHEN 'running' THEN boot_id END, claimed_until_us = NULL, \
              state = CASE state WHEN 'queued' THEN 'cancelled' ELSE state END \
              WHERE id = $2 AND state IN ('queued', 'running') RETURNING ",
             job_columns!()

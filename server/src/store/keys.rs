@@ -2,7 +2,7 @@
 
 use super::database::statement::sql;
 use super::database::{Transaction, Turn};
-use super::{Store, StoreError};
+use super::{Notice, Store, StoreError};
 use crate::base::access::Scopes;
 
 row! {
@@ -89,7 +89,9 @@ impl Store {
             transaction.take_turn(Turn::Adoption).await?;
             give(&mut transaction, &key.client).await?;
         }
-        transaction.commit().await
+        transaction.commit().await?;
+        self.tell(Notice::Keys);
+        Ok(())
     }
 
     /// How much belongs to nobody: what was made without keys.

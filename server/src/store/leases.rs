@@ -4,82 +4,15 @@
 //! lease succeed only while its fence is the newest, so that a worker that was presumed dead cannot
 //! overwrite the work of its successor.
 
-use super::database::row::{FromRow, Row};
 use super::database::statement::{Statement, sql};
+use super::held::held;
 use super::writing::WriteTransaction;
 use super::{
-    EndCode, Ended, JobRow, JobState, NewIncumbent, ProgressRow, Store, StoreError, events, results,
+    EndCode, JobRow, JobState, NewIncumbent, ProgressRow, Store, StoreError, events, results,
 };
-use slewplan_solver::bounds;
 
 /// Attempts after which a job whose process died at each of them becomes `dead`.
 const MAX_ATTEMPTS: i64 = 3;
-
-/// The greater of the lower bound of a job and of that of a report (`$5`); either may be null.
-macro_rules! greater_bound {
-    () => {
-        "(CASE WHEN lower_bound_s >= $5 THEN lower_bound_s ELSE coalesce($5, lower_bound_s) END)"
-    };
-}
-
-/// The lower bound of a job after a report: the greater one, but no more than the duration of the
-/// plan.
-macro_rules! bound_beside {
-    ($incumbent:literal) => {
-        concat!(
-            "CASE WHEN ",
-            greater_bound!(),
-            " > ",
-            $incumbent,
-            " THEN ",
-            $incumbent,
-            " ELSE ",
-            greater_bound!(),
-            " END"
-        )
-    };
-}
-
-/// The claim of this process on a running job.
-#[derive(Debug)]
-pub(crate) struct Lease {
-    /// The job when it was leased.
-    pub(crate) job: JobRow,
-    /// Its scenario as JSON.
-    pub(crate) scenario: Vec<u8>,
-    /// What it may need of the memory that the jobs of a process share, bytes.
-    pub(crate) memory_bytes: i64,
-    /// Whether further jobs wait.
-    pub(crate) more_wait: bool,
-}
-
-impl FromRow for Lease {
-    fn from_row(row: Row<'_>) -> Result<Self, StoreError> {
-        Ok(Self {
-            job: JobRow::from_row(row)?,
-            scenario: row.get("scenario")?,
-            memory_bytes: row.get("memory_bytes")?,
-            more_wait: row.get("more_wait")?,
-        })
-    }
-}
-
-/// The memory that a process has left for a further job, beside those that it works on.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct MemoryRoom {
-    /// Jobs that may need more, bytes, are passed over,
-    pub(crate) bytes: i64,
-    /// but none that was submitted before this time: no other job is begun before it.
-    pub(crate) passed_over_since_us: i64,
-}
-
-impl MemoryRoom {
-    /// The process works on no job: each has room.
-    pub(crate) const ALL: Self = Self {
-        bytes: i64::MAX,
-        passed_over_since_us: 0,
-    };
-}
 
 /// What is known of other processes that have leased jobs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,6 +32,8 @@ pub(crate) struct Recovered {
     pub(crate) cancelled: usize,
     /// Dead: no attempts left.
     pub(crate) dead: usize,
+    /// Not kept for a process any more: they were queued and still are.
+    pub(crate) unclaimed: u64,
 }
 
 impl Recovered {
@@ -109,49 +44,6 @@ impl Recovered {
 }
 
 impl Store {
-    /// Leases the job whose turn it is; `None` when no job is queued that has room. A lower bound of
-    /// an earlier attempt is kept if this version of the bounds gave it.
-    pub(crate) async fn lease(
-        &self,
-        boot_id: &str,
-        lease_until_us: i64,
-        room: MemoryRoom,
-        now_us: i64,
-    ) -> Result<Option<Lease>, StoreError> {
-        let mut transaction = self.begin().await?;
-        let lease: Option<Lease> = sql(concat!(
-            "UPDATE jobs SET state = 'running', attempt = attempt + 1, fence = fence + 1, \
-             boot_id = $1, lease_until_us = $2, started_us = $3, stage = NULL, done = NULL, \
-             total = NULL, \
-             lower_bound_s = CASE bound_version WHEN $4 THEN lower_bound_s END, bound_version = $4, \
-             incumbent_s = (SELECT total_time_s FROM incumbents WHERE job = sequence) \
-             WHERE sequence = \
-             (SELECT sequence FROM jobs WHERE state = 'queued' \
-             AND (memory_bytes <= $5 OR submitted_us < $6) \
-             ORDER BY priority DESC, turn, sequence LIMIT 1 {skip_locked}) \
-             AND memory_bytes <= $5 RETURNING scenario, memory_bytes, \
-             EXISTS (SELECT 1 FROM jobs AS others WHERE others.state = 'queued' \
-             AND others.sequence <> jobs.sequence) AS more_wait, ",
-            job_columns!()
-        ))
-        .bind(boot_id)
-        .bind(lease_until_us)
-        .bind(now_us)
-        .bind(bounds::VERSION)
-        .bind(room.bytes)
-        .bind(room.passed_over_since_us)
-        .fetch_optional(&mut *transaction)
-        .await?;
-        let Some(lease) = lease else {
-            // A job without room is locked, and nobody else finds it while it is.
-            transaction.rollback().await?;
-            return Ok(None);
-        };
-        events::append(&mut transaction, "state", &lease.job, now_us).await?;
-        transaction.commit().await?;
-        Ok(Some(lease))
-    }
-
     /// Prolongs a lease; `false` when it has been lost.
     pub(crate) async fn prolong(
         &self,
@@ -159,11 +51,14 @@ impl Store {
         lease_until_us: i64,
     ) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
-        let prolonged = sql("UPDATE jobs SET lease_until_us = $1 \
-             WHERE sequence = $2 AND fence = $3 AND state = 'running'")
+        let prolonged = sql(concat!(
+            "UPDATE jobs SET lease_until_us = CASE state WHEN 'running' THEN $1 END, \
+             claimed_until_us = CASE state WHEN 'queued' THEN $1 END \
+             FROM {rows $2 leased bigint, held bigint} AS lease WHERE ",
+            is_held!()
+        ))
         .bind(lease_until_us)
-        .bind(lease.sequence)
-        .bind(lease.fence)
+        .rows(vec![held(lease)])
         .execute(&mut *transaction)
         .await?;
         transaction.commit().await?;
@@ -183,22 +78,28 @@ impl Store {
     ) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
         let update = sql(concat!(
-            "UPDATE jobs SET stage = $1, done = $2, total = $3, \
-             incumbent_s = CASE WHEN incumbent_s <= $4 THEN incumbent_s \
-             ELSE coalesce($4, incumbent_s) END, lower_bound_s = ",
+            "UPDATE jobs SET stage = told_stage, done = told_done, total = told_total, \
+             incumbent_s = CASE WHEN incumbent_s <= plan_s THEN incumbent_s \
+             ELSE coalesce(plan_s, incumbent_s) END, lower_bound_s = ",
             bound_beside!(
-                "(CASE WHEN incumbent_s <= $4 THEN incumbent_s ELSE coalesce($4, incumbent_s) END)"
+                "(CASE WHEN incumbent_s <= plan_s THEN incumbent_s \
+                 ELSE coalesce(plan_s, incumbent_s) END)"
             ),
-            " WHERE sequence = $6 AND fence = $7 AND state = 'running' RETURNING ",
+            " FROM {rows $1 leased bigint, held bigint, told_stage text, told_done bigint, \
+             told_total bigint, plan_s double precision, told_bound_s double precision} AS told WHERE ",
+            is_held!(),
+            " RETURNING ",
             job_columns!()
         ))
-        .bind(progress.stage)
-        .bind(progress.done)
-        .bind(progress.total)
-        .bind(progress.incumbent_s)
-        .bind(progress.lower_bound_s)
-        .bind(lease.sequence)
-        .bind(lease.fence);
+        .rows(vec![[
+            lease.sequence.into(),
+            lease.fence.into(),
+            progress.stage.into(),
+            progress.done.into(),
+            progress.total.into(),
+            progress.incumbent_s.into(),
+            progress.lower_bound_s.into(),
+        ]]);
         let Some(_) = update_leased(&mut transaction, update, "progress", now_us).await? else {
             return Ok(false);
         };
@@ -209,67 +110,17 @@ impl Store {
         Ok(true)
     }
 
-    /// Records the end of a leased job: state, result and event together; `false` when the lease
-    /// has been lost.
-    ///
-    /// A cancellation acknowledged in the meantime takes precedence. If the solve was cut short, a
-    /// better plan of an earlier attempt becomes the result. If the job ends without a plan, its
-    /// best plan so far remains readable.
-    pub(crate) async fn finish(
-        &self,
-        lease: &JobRow,
-        ended: &Ended,
-        now_us: i64,
-    ) -> Result<bool, StoreError> {
-        let mut transaction = self.begin().await?;
-        let kept = if ended.early {
-            results::better_incumbent(&mut transaction, lease.sequence, ended).await?
-        } else {
-            None
-        };
-        let ended = kept.as_ref().unwrap_or(ended);
-        let update = sql(concat!(
-            "UPDATE jobs SET state = CASE WHEN cancel_requested_us IS NULL THEN $1 \
-             ELSE 'cancelled' END, \
-             code = CASE WHEN cancel_requested_us IS NULL THEN $2 END, detail = $3, \
-             incumbent_s = coalesce($4, incumbent_s), lower_bound_s = ",
-            bound_beside!("coalesce($4, incumbent_s)"),
-            ", finished_us = $6, keep_out_violated = $7, boot_id = NULL, lease_until_us = NULL \
-             WHERE sequence = $8 AND fence = $9 AND state = 'running' RETURNING ",
-            job_columns!()
-        ))
-        .bind(ended.state.into_str())
-        .bind(ended.code.map(EndCode::as_str))
-        .bind(&ended.detail)
-        .bind(ended.incumbent_s)
-        .bind(ended.lower_bound_s)
-        .bind(now_us)
-        .bind(ended.keep_out_violated)
-        .bind(lease.sequence)
-        .bind(lease.fence);
-        let Some(job) = update_leased(&mut transaction, update, "state", now_us).await? else {
-            return Ok(false);
-        };
-        if job.state()? == JobState::Cancelled {
-            results::delete_unfinished(&mut transaction, lease.sequence).await?;
-        } else {
-            results::store_result(&mut transaction, lease.sequence, ended).await?;
-        }
-        transaction.commit().await?;
-        Ok(true)
-    }
-
     /// Returns a leased job to the queue; the attempt does not count.
     pub(crate) async fn release(&self, lease: &JobRow, now_us: i64) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
         let update = sql(concat!(
             "UPDATE jobs SET state = 'queued', attempt = attempt - 1, boot_id = NULL, \
-             lease_until_us = NULL WHERE sequence = $1 AND fence = $2 AND state = 'running' \
-             RETURNING ",
+             lease_until_us = NULL FROM {rows $1 leased bigint, held bigint} AS lease WHERE ",
+            is_held!(),
+            " AND state = 'running' RETURNING ",
             job_columns!()
         ))
-        .bind(lease.sequence)
-        .bind(lease.fence);
+        .rows(vec![held(lease)]);
         let released = update_leased(&mut transaction, update, "state", now_us).await?;
         transaction.commit().await?;
         Ok(released.is_some())
@@ -292,8 +143,9 @@ impl Store {
              detail = CASE WHEN cancel_requested_us IS NULL AND attempt >= $1 THEN \
              'its process ended unexpectedly at every attempt' END, \
              code = CASE WHEN cancel_requested_us IS NULL AND attempt >= $1 THEN $4 END, \
-             boot_id = NULL, lease_until_us = NULL \
-             WHERE state = 'running' AND (($5 AND boot_id <> $3) OR lease_until_us < $2) RETURNING ",
+             boot_id = NULL, lease_until_us = NULL WHERE sequence IN \
+             (SELECT sequence FROM jobs WHERE state = 'running' \
+             AND (($5 AND boot_id <> $3) OR lease_until_us < $2) {skip_locked}) RETURNING ",
             job_columns!()
         ))
         .bind(MAX_ATTEMPTS)
@@ -303,7 +155,7 @@ impl Store {
         .bind(others == OtherProcesses::Ended)
         .fetch_all(&mut *transaction)
         .await?;
-        let mut recovered = Recovered::default();
+        let (mut recovered, mut told) = (Recovered::default(), Vec::new());
         for job in &jobs {
             match job.state()? {
                 JobState::Queued => recovered.queued += 1,
@@ -313,8 +165,18 @@ impl Store {
                 }
                 _ => recovered.dead += 1,
             }
-            events::append(&mut transaction, "state", job, now_us).await?;
+            told.push(transaction.event("state", job, now_us)?);
         }
+        events::append_all(&mut transaction, &told).await?;
+        // Nobody has seen these begin: they wait as before.
+        recovered.unclaimed = sql("UPDATE jobs SET boot_id = NULL, claimed_until_us = NULL \
+             WHERE sequence IN (SELECT sequence FROM jobs WHERE state = 'queued' \
+             AND (($2 AND boot_id <> $1) OR claimed_until_us < $3) {skip_locked})")
+        .bind(boot_id)
+        .bind(others == OtherProcesses::Ended)
+        .bind(now_us)
+        .execute(&mut *transaction)
+        .await?;
         transaction.commit().await?;
         Ok(recovered)
     }

@@ -2,7 +2,7 @@
 
 use super::database::Transaction;
 use super::database::statement::sql;
-use super::legs::{SOLVER_VERSION, key};
+use super::legs::{SOLVER_VERSION, keys_of};
 use super::{Store, StoreError};
 use slewplan_solver::bounds;
 use slewplan_solver::tour::legs::StoredTime;
@@ -64,18 +64,12 @@ impl LegSnapshot {
     }
 
     async fn rows(&mut self, identities: &[&str]) -> Result<Vec<TimeRow>, StoreError> {
-        let mut keys = String::with_capacity(2 + 67 * identities.len());
-        for identity in identities {
-            keys.push_str(if keys.is_empty() { "[\"" } else { ",\"" });
-            keys.push_str(&key(identity));
-            keys.push('"');
-        }
-        keys.push(']');
         sql(
-            "SELECT asked.key AS position, duration_s, certified_lower_bound_s, bound_version, \
-             solve_time_s FROM {legs_asked_for} AND solver_version = $2",
+            "SELECT place AS position, duration_s, certified_lower_bound_s, bound_version, \
+             solve_time_s FROM {asked} {join_leg_times} ON legs.key = wanted \
+             AND solver_version = $2",
         )
-        .bind(keys)
+        .bind(keys_of(identities))
         .bind(SOLVER_VERSION)
         .fetch_all(&mut self.0)
         .await

@@ -1,10 +1,12 @@
 //! Solved legs.
 
 mod upkeep;
+mod writing;
+
+pub(super) use writing::put_legs;
 
 use super::database::row::{FromRow, Row};
 use super::database::statement::sql;
-use super::database::{Transaction, Turn};
 use super::{Store, StoreError};
 use slewplan_solver::bounds;
 use slewplan_solver::model::cone::ForbiddenCone;
@@ -130,37 +132,45 @@ pub(crate) fn key(identity: &str) -> String {
     crate::base::digest::hex(identity.as_bytes())
 }
 
-impl Store {
-    /// The stored leg of an identity, if this version of the solver solved it.
-    pub(crate) async fn known_leg(&self, identity: &str) -> Result<Option<StoredLeg>, StoreError> {
-        let found: Option<KnownLeg> = sql(concat!(
-            "SELECT document, trajectory, ",
-            leg_columns!(),
-            " FROM legs JOIN (SELECT key AS spacecraft_key, document FROM leg_spacecraft) AS known \
-             ON spacecraft_key = spacecraft \
-             WHERE key = $1 AND identity = $2 AND solver_version = $3"
-        ))
-        .bind(key(identity))
-        .bind(identity)
-        .bind(SOLVER_VERSION)
-        .fetch_optional(&self.database)
-        .await?;
-        found
-            .map(|known| known.leg.row.stored(known.spacecraft, known.leg.motion))
-            .transpose()
-    }
+/// The keys of legs as the text of a JSON array.
+pub(super) fn keys_of(identities: &[&str]) -> String {
+    let keys: Vec<_> = identities
+        .iter()
+        .map(|identity| format!("\"{}\"", key(identity)))
+        .collect();
+    format!("[{}]", keys.join(","))
+}
 
-    /// Stores legs, all of them or none. Returns how many were not stored by this version with bounds
-    /// of this version before.
-    pub(crate) async fn put_legs(&self, legs: &[NewLeg], now_us: i64) -> Result<u64, StoreError> {
-        let mut transaction = self.begin().await?;
-        transaction.take_turn(Turn::Legs).await?;
-        let mut new = 0;
-        for leg in legs {
-            new += put_leg(&mut transaction, leg, now_us).await?;
+impl Store {
+    /// The stored legs of identities, in their order, that this version of the solver solved.
+    pub(crate) async fn known_legs(
+        &self,
+        identities: &[&str],
+    ) -> Result<Vec<Option<StoredLeg>>, StoreError> {
+        let found: Vec<KnownLeg> = sql(concat!(
+            "SELECT place, document, trajectory, ",
+            leg_columns!(),
+            " FROM {asked} {join_legs} ON key = wanted \
+             JOIN (SELECT key AS spacecraft_key, document FROM leg_spacecraft) AS known \
+             ON spacecraft_key = spacecraft WHERE solver_version = $2"
+        ))
+        .bind(keys_of(identities))
+        .bind(SOLVER_VERSION)
+        .fetch_all(&self.database)
+        .await?;
+        let mut legs = vec![None; identities.len()];
+        for KnownLeg {
+            place,
+            leg,
+            spacecraft,
+        } in found
+        {
+            let place = usize::try_from(place).unwrap_or(usize::MAX);
+            if identities.get(place) == Some(&&*leg.row.identity) {
+                legs[place] = Some(leg.row.stored(spacecraft, leg.motion)?);
+            }
         }
-        transaction.commit().await?;
-        Ok(new)
+        Ok(legs)
     }
 
     /// A leg by its key, with its motion.
@@ -232,6 +242,8 @@ impl FromRow for LegWithMotion {
 
 /// A leg with all that a solve takes of it.
 struct KnownLeg {
+    /// Place of its key among those asked for.
+    place: i64,
     leg: LegWithMotion,
     /// Canonical text.
     spacecraft: String,
@@ -240,6 +252,7 @@ struct KnownLeg {
 impl FromRow for KnownLeg {
     fn from_row(row: Row<'_>) -> Result<Self, StoreError> {
         Ok(Self {
+            place: row.get("place")?,
             leg: LegWithMotion::from_row(row)?,
             spacecraft: row.get("document")?,
         })
@@ -251,53 +264,4 @@ fn read_motion(json: &[u8]) -> Result<Motion, StoreError> {
         table: "legs",
         what: error.to_string(),
     })
-}
-
-async fn put_leg(
-    transaction: &mut Transaction,
-    NewLeg { identity, leg }: &NewLeg,
-    now_us: i64,
-) -> Result<u64, StoreError> {
-    let trajectory = serde_json::to_vec(&leg.motion).map_err(|error| StoreError::Inconsistent {
-        table: "legs",
-        what: error.to_string(),
-    })?;
-    let spacecraft = key(&leg.spacecraft);
-    sql("INSERT INTO leg_spacecraft (key, document) VALUES ($1, $2) ON CONFLICT DO NOTHING")
-        .bind(&spacecraft)
-        .bind(&leg.spacecraft)
-        .execute(&mut *transaction)
-        .await?;
-    let mut insert = sql(
-        "INSERT INTO legs (key, identity, spacecraft, kind, turn_x, turn_y, turn_z, turn_w, \
-         momentum_x, momentum_y, momentum_z, reversible, duration_s, certified_lower_bound_s, \
-         bound_version, solve_time_s, status, solver_version, trajectory, created_us) \
-         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20) \
-         ON CONFLICT (key) DO UPDATE SET reversible = excluded.reversible, duration_s = excluded.duration_s, \
-         certified_lower_bound_s = excluded.certified_lower_bound_s, \
-         bound_version = excluded.bound_version, solve_time_s = excluded.solve_time_s, \
-         status = excluded.status, \
-         solver_version = excluded.solver_version, trajectory = excluded.trajectory, \
-         created_us = excluded.created_us WHERE legs.solver_version <> excluded.solver_version \
-         OR legs.bound_version IS DISTINCT FROM excluded.bound_version",
-    )
-    .bind(key(identity))
-    .bind(identity)
-    .bind(spacecraft)
-    .bind(<&str>::from(leg.kind));
-    for number in leg.turn_xyzw.into_iter().chain(leg.body_momentum_nms) {
-        insert = insert.bind(number);
-    }
-    insert
-        .bind(leg.reversible)
-        .bind(leg.duration_s)
-        .bind(leg.certified_lower_bound_s)
-        .bind(bounds::VERSION)
-        .bind(leg.solve_time_s)
-        .bind(&leg.status)
-        .bind(SOLVER_VERSION)
-        .bind(&trajectory)
-        .bind(now_us)
-        .execute(transaction)
-        .await
 }

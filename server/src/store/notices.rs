@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
-use tokio::sync::oneshot;
+use tokio::sync::{Notify, oneshot};
 
 const CHANNEL: &str = "slewplan";
 /// Pause before another try to listen.
@@ -33,6 +33,8 @@ pub(crate) enum Notice {
     Changed,
     /// A job shall stop or be cancelled, or has been deleted.
     Requested(String),
+    /// A key has been made.
+    Keys,
     /// Notices may have been missed.
     Missed,
 }
@@ -41,6 +43,7 @@ impl Notice {
     fn text(&self) -> String {
         match self {
             Self::Queued => "queued".into(),
+            Self::Keys => "keys".into(),
             Self::Changed | Self::Missed => "changed".into(),
             Self::Requested(id) => format!("requested {id}"),
         }
@@ -51,6 +54,7 @@ impl Notice {
         match text.split_once(' ') {
             Some(("requested", id)) => Self::Requested(id.to_owned()),
             _ if text == "queued" => Self::Queued,
+            _ if text == "keys" => Self::Keys,
             _ => Self::Changed,
         }
     }
@@ -73,6 +77,8 @@ pub(super) struct Notices {
     pool: PgPool,
     /// Tells the notices of this process from those of others.
     own: Arc<str>,
+    /// Notified when another process has made a key.
+    keys: Arc<Notify>,
 }
 
 impl Notices {
@@ -81,7 +87,12 @@ impl Notices {
         let (queue, notices) = unbounded_channel();
         let own: Arc<str> = uuid::Uuid::new_v4().simple().to_string().into();
         tokio::spawn(send(pool.clone(), Arc::clone(&own), notices));
-        Self { queue, pool, own }
+        Self {
+            queue,
+            pool,
+            own,
+            keys: Arc::default(),
+        }
     }
 
     /// Sends a notice soon.
@@ -153,6 +164,14 @@ impl Store {
         }
     }
 
+    /// Waits until another process has told that it made a key.
+    pub(crate) async fn told_of_keys(&self) {
+        match &self.database {
+            Database::Postgres(database) => database.notices.keys.notified().await,
+            Database::Sqlite(_) => std::future::pending().await,
+        }
+    }
+
     /// Calls `act` with the notices of other processes until the database is closed.
     pub(crate) async fn listen(&self, act: impl Fn(Notice)) {
         let Database::Postgres(PostgresDatabase { notices, .. }) = &self.database else {
@@ -175,16 +194,24 @@ impl Store {
 async fn listen(notices: &Notices, act: &impl Fn(Notice)) -> Result<(), StoreError> {
     let mut listener = PgListener::connect_with(&notices.pool).await?;
     listener.listen(CHANNEL).await?;
+    notices.keys.notify_one();
     act(Notice::Missed);
     loop {
         match listener.try_recv().await? {
             Some(notification) => {
-                if let Some(notice) = notices.foreign(&notification) {
+                let notice = notices.foreign(&notification);
+                if notice == Some(Notice::Keys) {
+                    notices.keys.notify_one();
+                }
+                if let Some(notice) = notice {
                     act(notice);
                 }
             }
             // The connection was lost, and there is a new one.
-            None => act(Notice::Missed),
+            None => {
+                notices.keys.notify_one();
+                act(Notice::Missed);
+            }
         }
     }
 }
@@ -199,6 +226,7 @@ mod tests {
         for notice in [
             Notice::Queued,
             Notice::Changed,
+            Notice::Keys,
             Notice::Requested(id.into()),
         ] {
             assert_eq!(Notice::of(&notice.text()), notice);

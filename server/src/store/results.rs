@@ -8,7 +8,7 @@
 use super::database::Transaction;
 use super::database::row::{FromRow, Row};
 use super::database::statement::sql;
-use super::{Ended, JobState, PackedPlan, Store, StoreError};
+use super::{Ended, JobEnd, JobState, PackedPlan, Store, StoreError};
 use bytes::Bytes;
 
 /// A stored plan.
@@ -102,32 +102,47 @@ impl FromRow for Ended {
     }
 }
 
-/// Replaces the incumbent by the result of the job. A result without a plan does not replace an
-/// incumbent.
-pub(super) async fn store_result(
+/// Replaces incumbents by the results of jobs. A result without a plan does not replace an incumbent.
+pub(super) async fn store_results(
     transaction: &mut Transaction,
-    job: i64,
-    ended: &Ended,
+    ends: &[&JobEnd],
 ) -> Result<(), StoreError> {
-    if ended.incumbent_s.is_some() {
-        delete_incumbent(transaction, job).await?;
+    let planned = ends.iter().filter(|end| end.ended.incumbent_s.is_some());
+    // A job whose begin is not stored has no incumbent either.
+    let stored = planned.filter(|end| end.begun.is_none());
+    let outdated: Vec<_> = stored.map(|end| [end.lease.sequence.into()]).collect();
+    if !outdated.is_empty() {
+        sql("DELETE FROM incumbents WHERE job IN (SELECT of_job FROM {rows $1 of_job bigint} AS ended)")
+            .rows(outdated)
+            .execute(&mut *transaction)
+            .await?;
     }
-    if let Some(document) = &ended.document {
-        sql(
-            "INSERT INTO results (job, document, packed, digest) SELECT $1, $2, $3, $4 \
-             WHERE NOT EXISTS (SELECT 1 FROM incumbents WHERE job = $1)",
-        )
-        .bind(job)
-        .bind(&document.document)
-        .bind(document.packed)
-        .bind(&document.digest)
-        .execute(transaction)
-        .await?;
+    let documents: Vec<_> = ends
+        .iter()
+        .filter_map(|end| {
+            let document = end.ended.document.as_ref()?;
+            Some([
+                end.lease.sequence.into(),
+                (&document.document).into(),
+                document.packed.into(),
+                (&document.digest).into(),
+            ])
+        })
+        .collect();
+    if documents.is_empty() {
+        return Ok(());
     }
+    sql("INSERT INTO results (job, document, packed, digest) \
+         SELECT of_job, new_document, new_packed, new_digest FROM \
+         {rows $1 of_job bigint, new_document {bytes}, new_packed boolean, new_digest text} AS new \
+         WHERE NOT EXISTS (SELECT 1 FROM incumbents WHERE job = of_job)")
+    .rows(documents)
+    .execute(transaction)
+    .await?;
     Ok(())
 }
 
-/// Deletes the incumbent of a job that ends with another plan.
+/// Deletes the incumbent of a job.
 async fn delete_incumbent(transaction: &mut Transaction, job: i64) -> Result<(), StoreError> {
     sql("DELETE FROM incumbents WHERE job = $1")
         .bind(job)

@@ -132,6 +132,16 @@ impl JobRow {
         JobState::stored(&self.state)
     }
 
+    /// The job after the begin of its next attempt.
+    pub(crate) fn begun(&self, now_us: i64) -> Self {
+        Self {
+            state: JobState::Running.into_str().to_owned(),
+            attempt: self.attempt + 1,
+            started_us: Some(now_us),
+            ..self.clone()
+        }
+    }
+
     /// What the job makes.
     pub(crate) fn work(&self) -> Result<Work, StoreError> {
         Work::from_str(&self.work).map_err(|_| StoreError::Inconsistent {

@@ -1,6 +1,7 @@
 //! Segments of tours that the search of a running job has solved.
 
-use super::database::statement::sql;
+use super::database::statement::{Value, sql};
+use super::held::held;
 use super::{JobRow, Store, StoreError};
 
 /// Segments of other versions of the solver are not found.
@@ -41,32 +42,39 @@ impl Store {
         segments: &[SegmentRow],
     ) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
-        let held: Option<(i64,)> = sql(
-            "SELECT sequence FROM jobs WHERE sequence = $1 AND fence = $2 AND state = 'running' \
-             {for_update}",
-        )
-        .bind(lease.sequence)
-        .bind(lease.fence)
+        let held: Option<(i64,)> = sql(concat!(
+            "SELECT sequence FROM jobs, {rows $1 leased bigint, held bigint} AS lease WHERE ",
+            is_held!(),
+            " {for_update_of_jobs}"
+        ))
+        .rows(vec![held(lease)])
         .fetch_optional(&mut *transaction)
         .await?;
         if held.is_none() {
             return Ok(false);
         }
-        for segment in segments {
-            sql(
-                "INSERT INTO segments (job, name, solver_version, intervals, motion) \
-                 VALUES ($1, $2, $3, $4, $5) ON CONFLICT (job, name) DO UPDATE SET \
-                 solver_version = excluded.solver_version, intervals = excluded.intervals, \
-                 motion = excluded.motion",
-            )
-            .bind(lease.sequence)
-            .bind(&segment.name)
-            .bind(SOLVER_VERSION)
-            .bind(segment.intervals)
-            .bind(&segment.motion)
-            .execute(&mut *transaction)
-            .await?;
-        }
+        let rows = segments.iter().map(|segment| {
+            let name = Value::from(&segment.name);
+            let motion = Value::from(&segment.motion);
+            [
+                lease.sequence.into(),
+                name,
+                segment.intervals.into(),
+                motion,
+            ]
+        });
+        sql(
+            "INSERT INTO segments (job, name, solver_version, intervals, motion) \
+             SELECT of_job, new_name, CAST($1 AS text), new_intervals, new_motion \
+             FROM {rows $2 of_job bigint, new_name text, new_intervals bigint, new_motion {bytes}} \
+             AS new WHERE true ON CONFLICT (job, name) DO UPDATE SET \
+             solver_version = excluded.solver_version, intervals = excluded.intervals, \
+             motion = excluded.motion",
+        )
+        .bind(SOLVER_VERSION)
+        .rows(rows.collect())
+        .execute(&mut *transaction)
+        .await?;
         transaction.commit().await?;
         Ok(true)
     }

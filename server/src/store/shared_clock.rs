@@ -23,16 +23,35 @@ impl Store {
         clock::now_us().saturating_add(ahead)
     }
 
-    /// Compares the clock of this machine with that of the server.
-    pub(crate) async fn compare_clocks(&self) -> Result<(), StoreError> {
+    /// Compares the clock of this machine with that of the server, and looks what waits there; nothing does
+    /// in a file, whose process looks by itself.
+    pub(crate) async fn compare_clocks(&self) -> Result<Standing, StoreError> {
         let Database::Postgres(database) = &self.database else {
-            return Ok(());
+            return Ok(Standing::default());
         };
         let before = clock::now_us();
-        let now = "SELECT CAST(extract(epoch FROM clock_timestamp()) * 1000000 AS bigint)";
-        let server: i64 = sqlx::query_scalar(now).fetch_one(&database.pool).await?;
+        let look = "SELECT now_us, \
+             EXISTS (SELECT 1 FROM jobs WHERE state = 'queued' AND boot_id IS NULL), \
+             EXISTS (SELECT 1 FROM jobs WHERE state = 'running' AND lease_until_us < now_us) \
+             OR EXISTS (SELECT 1 FROM jobs WHERE state = 'queued' AND claimed_until_us < now_us) \
+             FROM (SELECT CAST(extract(epoch FROM clock_timestamp()) * 1000000 AS bigint) AS now_us) \
+             AS clock";
+        let (server, jobs_wait, leases_expired): (i64, bool, bool) =
+            sqlx::query_as(look).fetch_one(&database.pool).await?;
         let here = i64::midpoint(before, clock::now_us());
         database.clock.0.store(server - here, Ordering::Relaxed);
-        Ok(())
+        Ok(Standing {
+            jobs_wait,
+            leases_expired,
+        })
     }
+}
+
+/// What waits on a server.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Standing {
+    /// Whether jobs are queued that nobody has claimed.
+    pub(crate) jobs_wait: bool,
+    /// Whether leases or claims have expired.
+    pub(crate) leases_expired: bool,
 }

@@ -1,6 +1,7 @@
 //! Leases, incumbents, segments and events over several attempts, and failures of the disk.
 
 mod bounds;
+mod claims;
 mod copy;
 mod ends;
 mod fence;
@@ -17,9 +18,9 @@ mod statements;
 use super::database::row::FromRow;
 use super::database::statement::{Statement, sql};
 use super::{
-    DatabaseAddress, Ended, JobRow, JobState, Lease, MemoryRoom, NewIncumbent, OtherProcesses,
-    PackedPlan, ProgressRow, QueueLimits, ResultRow, SegmentRow, Store, StoreError, Submission,
-    Submitted, Work,
+    Claim, DatabaseAddress, Ended, Exchange, JobEnd, JobRow, JobState, Lease, MemoryRoom,
+    NewIncumbent, OtherProcesses, PackedPlan, ProgressRow, QueueLimits, ResultRow, SegmentRow,
+    Store, StoreError, Submission, Submitted, Work,
 };
 
 const ID: &str = "00000000-0000-7000-8000-000000000000";
@@ -86,6 +87,48 @@ async fn submitted(store: &Store) {
         .await
         .expect("stored");
     assert!(matches!(queued, Submitted::New(_)));
+}
+
+impl Store {
+    /// Claims the next job, and stores its begin.
+    async fn lease(
+        &self,
+        boot_id: &str,
+        lease_until_us: i64,
+        room: MemoryRoom,
+        now_us: i64,
+    ) -> Result<Option<Lease>, StoreError> {
+        let claim = Claim {
+            boot_id,
+            lease_until_us,
+            room,
+            at_most: 1,
+            begins_later: false,
+        };
+        let exchange = Exchange {
+            claim: Some(claim),
+            ..Exchange::default()
+        };
+        let mut leases = self.exchange(&exchange, now_us).await?.leases;
+        Ok(leases.pop())
+    }
+
+    /// Stores the end of a job; whether its lease was held.
+    async fn finish(&self, lease: &JobRow, ended: &Ended, now_us: i64) -> Result<bool, StoreError> {
+        let end = JobEnd {
+            lease: lease.clone(),
+            begun: None,
+            progress: None,
+            ended: ended.clone(),
+            at_us: now_us,
+        };
+        let exchange = Exchange {
+            ends: &[end],
+            ..Exchange::default()
+        };
+        let done = self.exchange(&exchange, now_us).await?;
+        Ok(done.lost_ends.is_empty())
+    }
 }
 
 async fn lease(store: &Store, boot_id: &str) -> Lease {

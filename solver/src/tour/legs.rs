@@ -81,6 +81,20 @@ pub trait LegStore: Sync {
     /// The leg of an identity, when it is known.
     fn get(&self, identity: &str) -> Option<StoredLeg>;
 
+    /// The legs of a few identities, in their order.
+    fn get_all(&self, identities: &[&str]) -> Vec<Option<StoredLeg>> {
+        identities
+            .iter()
+            .map(|identity| self.get(identity))
+            .collect()
+    }
+
+    /// Number of legs that are best looked up at once: more than one where each look-up has a price, such
+    /// as the way to a server.
+    fn batch(&self) -> usize {
+        1
+    }
+
     /// The times of the legs of many identities, in their order; `None` for legs that are not known.
     /// Their motions are not read.
     fn times(&self, identities: &[&str]) -> Vec<Option<StoredTime>> {

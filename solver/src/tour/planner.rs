@@ -16,6 +16,7 @@ mod lagrangian;
 mod leg_time_table;
 mod leg_trials;
 mod legs;
+mod legs_ahead;
 mod memory;
 mod places;
 mod plan_builder;

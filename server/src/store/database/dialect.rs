@@ -18,12 +18,17 @@ struct Word {
     postgres: &'static str,
 }
 
-const WORDS: [Word; 5] = [
+const WORDS: [Word; 9] = [
     // Rows that are read in order to be written by the same transaction.
     Word {
         name: "{for_update}",
         sqlite: "",
         postgres: "FOR UPDATE",
+    },
+    Word {
+        name: "{for_update_of_jobs}",
+        sqlite: "",
+        postgres: "FOR UPDATE OF jobs",
     },
     // The same, without those that another transaction has chosen.
     Word {
@@ -46,20 +51,43 @@ const WORDS: [Word; 5] = [
         postgres: "SELECT pg_sequence_last_value(CAST(pg_get_serial_sequence($1, 'sequence') \
              AS regclass))",
     },
-    // The texts of a JSON array as rows `asked (key, value)`, counted from 0, each with its leg.
+    // The texts of a JSON array as rows `asked (place, wanted)`, counted from 0.
     Word {
-        name: "{legs_asked_for}",
-        sqlite: "json_each($1) AS asked CROSS JOIN legs INDEXED BY leg_times \
-             ON legs.key = asked.value",
-        postgres: "(SELECT place - 1 AS key, value \
+        name: "{asked}",
+        sqlite: "(SELECT key AS place, value AS wanted FROM json_each($1)) AS asked",
+        postgres: "(SELECT element.place - 1 AS place, wanted \
              FROM jsonb_array_elements_text(CAST($1 AS jsonb)) WITH ORDINALITY \
-             AS element (value, place)) AS asked JOIN legs ON legs.key = asked.value",
+             AS element (wanted, place)) AS asked",
+    },
+    // Before the condition that joins their legs, first each by its key, then by the index that has
+    // the times too.
+    Word {
+        name: "{join_legs}",
+        sqlite: "CROSS JOIN legs",
+        postgres: "JOIN legs",
+    },
+    Word {
+        name: "{join_leg_times}",
+        sqlite: "CROSS JOIN legs INDEXED BY leg_times",
+        postgres: "JOIN legs",
+    },
+    // The type of bytes.
+    Word {
+        name: "{bytes}",
+        sqlite: "blob",
+        postgres: "bytea",
     },
 ];
 
+/// How the place of rows in a statement begins.
+const ROWS: &str = "{rows $";
+
 impl Dialect {
-    /// The statement in this language.
-    pub(in crate::store) fn of(self, statement: SqlStr) -> SqlStr {
+    /// The statement in this language, with a number of rows of values.
+    ///
+    /// `{rows $3 job bigint, plan {bytes}}` stands for a table of as many rows with the columns `job` and
+    /// `plan`: its values are `$3`, `$4` in the first row, `$5`, `$6` in the second, and so on.
+    pub(in crate::store) fn of(self, statement: SqlStr, rows: usize) -> SqlStr {
         if !statement.as_str().contains('{') {
             return statement;
         }
@@ -71,6 +99,55 @@ impl Dialect {
             };
             text = text.replace(word.name, meant);
         }
+        if let Some(with_rows) = with_rows(&text, rows) {
+            text = with_rows;
+        }
         AssertSqlSafe(text).into_sql_str()
+    }
+}
+
+/// A statement with its rows written out; `None` when it has none.
+fn with_rows(text: &str, rows: usize) -> Option<String> {
+    let (before, rest) = text.split_once(ROWS)?;
+    let (declared, after) = rest.split_once('}')?;
+    let (first, columns) = declared.split_once(' ')?;
+    let first: usize = first.parse().ok()?;
+    let columns: Vec<(&str, &str)> = columns
+        .split(", ")
+        .filter_map(|column| column.split_once(' '))
+        .collect();
+    let row = |row: usize| {
+        let value = |(column, (_, kind)): (usize, &(&str, &str))| {
+            let number = first + row * columns.len() + column;
+            format!("CAST(${number} AS {kind})")
+        };
+        let values: Vec<_> = columns.iter().enumerate().map(value).collect();
+        format!("({})", values.join(", "))
+    };
+    let rows: Vec<_> = (0..rows).map(row).collect();
+    let name =
+        |(number, (name, _)): (usize, &(&str, &str))| format!("column{} AS {name}", number + 1);
+    let names: Vec<_> = columns.iter().enumerate().map(name).collect();
+    let (names, rows) = (names.join(", "), rows.join(", "));
+    Some(format!(
+        "{before}(SELECT {names} FROM (VALUES {rows}) AS given){after}"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_written_out_with_numbered_values() {
+        let statement =
+            "INSERT INTO t SELECT job, plan FROM {rows $3 job bigint, plan {bytes}} AS new";
+        let expected = "INSERT INTO t SELECT job, plan FROM (SELECT column1 AS job, column2 AS plan \
+             FROM (VALUES (CAST($3 AS bigint), CAST($4 AS bytea)), \
+             (CAST($5 AS bigint), CAST($6 AS bytea))) AS given) AS new";
+        let written = Dialect::Postgres.of(statement.into_sql_str(), 2);
+        assert_eq!(written.as_str(), expected);
+        let plain = "SELECT 1".into_sql_str();
+        assert_eq!(Dialect::Sqlite.of(plain, 2).as_str(), "SELECT 1");
     }
 }

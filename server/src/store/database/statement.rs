@@ -74,6 +74,7 @@ values! {
 pub(in crate::store) struct Statement<'v> {
     text: SqlStr,
     values: Vec<Value<'v>>,
+    rows: usize,
 }
 
 /// A statement without values so far.
@@ -81,6 +82,7 @@ pub(in crate::store) fn sql<'v>(text: impl SqlSafeStr) -> Statement<'v> {
     Statement {
         text: text.into_sql_str(),
         values: Vec::new(),
+        rows: 1,
     }
 }
 
@@ -106,6 +108,13 @@ impl<'v> Statement<'v> {
     /// Gives the next of the values `$1`, `$2` and so on.
     pub(in crate::store) fn bind(mut self, value: impl Into<Value<'v>>) -> Self {
         self.values.push(value.into());
+        self
+    }
+
+    /// Gives the values of the rows that the statement stands for, as the last ones; there must be some.
+    pub(in crate::store) fn rows<const N: usize>(mut self, rows: Vec<[Value<'v>; N]>) -> Self {
+        self.rows = rows.len();
+        self.values.extend(rows.into_iter().flatten());
         self
     }
 
@@ -156,7 +165,7 @@ impl<'v> Statement<'v> {
     }
 
     fn for_sqlite(self) -> Query<'static, Sqlite, SqliteArguments> {
-        let mut query = sqlx::query(Dialect::Sqlite.of(self.text));
+        let mut query = sqlx::query(Dialect::Sqlite.of(self.text, self.rows));
         for value in self.values {
             query = match value {
                 Value::Bool(value) => query.bind(value),
@@ -170,7 +179,7 @@ impl<'v> Statement<'v> {
     }
 
     fn for_postgres(self) -> Query<'static, Postgres, PgArguments> {
-        let mut query = sqlx::query(Dialect::Postgres.of(self.text));
+        let mut query = sqlx::query(Dialect::Postgres.of(self.text, self.rows));
         for value in self.values {
             query = match value {
                 Value::Bool(value) => query.bind(value),

@@ -79,8 +79,10 @@ async fn certified(store: &Store, leg: &NewLeg) -> [Option<f64>; 2] {
     let [listed] = &listed[..] else {
         panic!("{listed:?}");
     };
-    let found = store.known_leg(&leg.identity).await.expect("read");
-    let found = found.expect("the leg is there");
+    let found = store.known_legs(&["another", &leg.identity]).await;
+    let [None, Some(found)] = &found.expect("read")[..] else {
+        panic!("the leg is not there");
+    };
     [
         listed.certified_lower_bound_s(),
         found.certified_lower_bound_s,

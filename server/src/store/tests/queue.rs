@@ -166,14 +166,14 @@ fn a_job_without_room_is_passed_over_until_it_has_waited_for_long() {
                 passed_over_since_us,
             };
             let lease = store.lease("worker", 1_000, room, 20).await.expect("tried");
-            lease.map(|lease| (lease.job.sequence, lease.memory_bytes, lease.more_wait))
+            lease.map(|lease| (lease.job.sequence, lease.memory_bytes))
         };
-        assert_eq!(leased(99, 10).await, Some((4, 99, true)));
+        assert_eq!(leased(99, 10).await, Some((4, 99)));
         // Now the first has waited for long, and nothing is begun before it.
         assert_eq!(leased(200, 11).await, None);
-        assert_eq!(leased(500, 11).await, Some((1, 500, true)));
-        assert_eq!(leased(i64::MAX, 0).await, Some((2, 100, true)));
-        assert_eq!(leased(i64::MAX, 0).await, Some((3, 501, false)));
+        assert_eq!(leased(500, 11).await, Some((1, 500)));
+        assert_eq!(leased(i64::MAX, 0).await, Some((2, 100)));
+        assert_eq!(leased(i64::MAX, 0).await, Some((3, 501)));
     });
 }
 

@@ -179,11 +179,11 @@ fn every_statement_is_valid_for_the_schema() {
                 let text = AssertSqlSafe(statement.clone()).into_sql_str();
                 let prepared = match &store.database {
                     Database::Sqlite(database) => {
-                        let text = Dialect::Sqlite.of(text);
+                        let text = Dialect::Sqlite.of(text, 1);
                         database.writer.prepare(text).await.map(drop)
                     }
                     Database::Postgres(database) => {
-                        let text = Dialect::Postgres.of(text);
+                        let text = Dialect::Postgres.of(text, 1);
                         database.pool.prepare(text).await.map(drop)
                     }
                 };

@@ -7,6 +7,7 @@ use super::Run;
 use super::bounds_by_form::BoundsByForm;
 use super::canonical::{CanonicalLeg, missing_from};
 use super::from_store::{leg_from_store, stored_leg};
+use super::legs_ahead::LegsAhead;
 use super::places::Places;
 use super::tables::{CertifiedLeg, SolvedLeg, SolvedTable, Table, TabulatedLeg};
 use super::verified::{flight_faults, is_feasible};
@@ -295,12 +296,16 @@ impl<'a> LegSolver<'a> {
         let missing = missing_from(&lock(&self.known), canonical);
         let done = AtomicU64::new(0);
         let total = missing.len() as u64;
-        self.run.pool.map(&missing, |(_, leg)| {
+        let legs: Vec<_> = missing.into_iter().map(|(_, leg)| leg).collect();
+        let ahead = LegsAhead::new(self.run.legs, &legs);
+        let legs: Vec<_> = legs.into_iter().enumerate().collect();
+        self.run.pool.map(&legs, |&(place, leg)| {
             // With thousands of legs, store look-ups alone would delay the stop noticeably.
             if self.is_abandoned() {
                 return;
             }
-            if let Some(stored) = self.load(leg) {
+            let row = ahead.take(place);
+            if let Some(stored) = row.and_then(|row| self.verified(leg, row)) {
                 self.keep(leg, &Arc::new(stored), true);
             } else if !self.stop.is_set() {
                 self.keep(leg, &Arc::new(self.solve(kind, leg)), false);
@@ -309,10 +314,14 @@ impl<'a> LegSolver<'a> {
         });
     }
 
-    /// A leg from the store, if its motion passes verification. A bound that the store does not
-    /// vouch for is computed again.
+    /// A leg from the store, if its motion passes verification.
     fn load(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
-        let row = self.run.legs.get(&leg.identity)?;
+        self.verified(leg, self.run.legs.get(&leg.identity)?)
+    }
+
+    /// A stored leg, if its motion passes verification. A bound that the store does not vouch for is
+    /// computed again.
+    fn verified(&self, leg: &CanonicalLeg, row: StoredLeg) -> Option<SolvedLeg> {
         let unproved = row.certified_lower_bound_s.is_none().then(|| row.clone());
         let mut stored = leg_from_store(leg, row)?;
         let faults = flight_faults(self.places, leg, &stored.solution.profile);

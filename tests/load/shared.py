@@ -2,68 +2,107 @@
 """Several services and workers on one Postgres: what they promise, and what they ask of it.
 
 Starts a Postgres, two services without a worker and some workers. Tiny jobs go in through both; every one
-must be solved once. Then jobs are stopped through the service that did not take them, while events are
-followed there. Last, everything is idle. Statements are counted in the log of the server.
+must be solved once. First some are counted, by the statements in the log of the server; then ten times as many
+are timed, by the stamps in the database, without that log: as they come, and from a queue that is full when the
+workers begin. Where the processor time went is told for each kind of process, this script among them. Then jobs
+are stopped through the service that did not take them, while events are followed there. Last, everything is idle.
 """
 
 import calendar
 import http.client
 import json
+import os
 import re
-import subprocess
 import sys
 import threading
 import time
 from collections import Counter
+from contextlib import ExitStack
 from pathlib import Path
 
-from service import FINAL, ROOT, Service, Table, binary, fixture, percentile
+from postgres import Postgres
+from service import FINAL, Service, Table, fixture, percentile
+from worker import Worker
 
+DATABASE = "postgres"
 IDLE_S = 20.0
 STOPS = 20
+TIMED = 10
+SENDERS = 4
 GOAL_STOP_MS, GOAL_EVENT_MS = 500.0, 250.0
+GOAL_RATE = 300.0
 EXECUTED = re.compile(r"LOG:  (?:execute [^:]*|statement): +(.*)")
+TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
+FINAL_STATES = ", ".join(f"'{state}'" for state in sorted(FINAL))
 
 
-class Postgres:
-    """A server of its own, which ends with this process."""
+class Log:
+    """The statements of a server, written to its log while it is asked for them."""
 
-    def __init__(self):
-        script = [str(ROOT / "tests" / "postgres.sh"), "-c", "log_statement=all", "-c", "max_connections=400"]
-        self.script = subprocess.Popen(script, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-        self.folder = self.script.stdout.readline().strip()
-        if not self.folder:
-            raise RuntimeError("Postgres is not installed")
-        self.url = f"postgres://slewplan@localhost/postgres?host={self.folder}"
+    def __init__(self, postgres):
+        self.postgres = postgres
+        self.path = Path(postgres.folder) / "server.log"
 
     def __enter__(self):
+        self._set("all")
+        self.begin = self.path.stat().st_size
         return self
 
     def __exit__(self, *_):
-        self.script.stdin.close()
-        self.script.wait(30)
+        self._set("none")
 
-    def statements(self):
-        """All that were executed so far, in order."""
-        lines = (Path(self.folder) / "server.log").read_text(errors="replace").splitlines()
-        return [found.group(1) for line in lines if (found := EXECUTED.search(line))]
+    def _set(self, what):
+        self.postgres.execute(DATABASE, f"ALTER SYSTEM SET log_statement = '{what}'", "SELECT pg_reload_conf()")
+        time.sleep(0.3)
+
+    def kinds(self):
+        """How many there were of each kind."""
+        with self.path.open(errors="replace") as log:
+            log.seek(self.begin)
+            found = [match.group(1) for line in log if (match := EXECUTED.search(line))]
+        # Those of this script, which are not prepared, name what it looks for.
+        return Counter(kind(statement) for statement in found if "/* load */" not in statement)
 
 
-class Worker:
-    """`slewplan work` with one thread."""
+def processor_s(pid):
+    """Processor time of a process, s."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    return TICK_S * (int(fields[11]) + int(fields[12]))
 
-    def __init__(self, url):
-        command = [binary(), "work", "--log", "error", "--threads", "1", "--database", url]
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-        if "working on" not in self.process.stdout.readline():
-            raise RuntimeError("the worker did not start")
 
-    def __enter__(self):
-        return self
+def children(pid):
+    """The processes that a process has started."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            try:
+                fields = (entry / "stat").read_text().rsplit(")", 1)[1].split()
+            except OSError:
+                continue
+            if int(fields[1]) == pid:
+                found.append(int(entry.name))
+    return found
 
-    def __exit__(self, *_):
-        self.process.terminate()
-        self.process.wait(30)
+
+class Processors:
+    """Processor time by kind of process; that of backends which end meanwhile is lost."""
+
+    def __init__(self, postgres, services, crew):
+        server = int((Path(postgres.folder) / "data" / "postmaster.pid").read_text().split()[0])
+        self.groups = {
+            "services": lambda: [service.process.pid for service in services],
+            "workers": lambda: [worker.process.pid for worker in crew],
+            "postgres": lambda: [server, *children(server)],
+            "this script": lambda: [os.getpid()],
+        }
+        self.before = self.now()
+
+    def now(self):
+        return {name: sum(map(processor_s, pids())) for name, pids in self.groups.items()}
+
+    def per_job_ms(self, jobs):
+        """Milliseconds of a job, by kind of process."""
+        return {name: 1e3 * (time_s - self.before[name]) / jobs for name, time_s in self.now().items()}
 
 
 def kind(statement):
@@ -81,24 +120,67 @@ def kind(statement):
     return verb
 
 
-def tiny_jobs(services, count):
-    """Submits jobs through all services at once; the jobs as they ended, and the seconds it took."""
-    identifiers, begin = [], time.monotonic()
+class Sender(threading.Thread):
+    """Submits the same scenario again and again, on one connection."""
 
-    def submit(service, share):
-        for _ in range(share):
-            identifiers.append(service.submit(fixture("two-targets")))
+    def __init__(self, service, count):
+        super().__init__()
+        self.connection = http.client.HTTPConnection(service.host, service.port, timeout=120)
+        self.body = json.dumps(fixture("two-targets")).encode()
+        self.count = count
+        self.refused = 0
 
-    threads = [
-        threading.Thread(target=submit, args=(services[number % len(services)], count // 4)) for number in range(4)
-    ]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    submitted = time.monotonic() - begin
-    ended = [services[0].wait_end(identifier, 300.0) for identifier in identifiers]
-    return ended, submitted, time.monotonic() - begin
+    def run(self):
+        for _ in range(self.count):
+            headers = {"Content-Type": "application/json"}
+            self.connection.request("POST", "/v1/plans", self.body, headers)
+            answer = self.connection.getresponse()
+            answer.read()
+            self.refused += answer.status != 202
+        self.connection.close()
+
+
+def submit(services, count):
+    """Submits jobs through all services at once; jobs a second."""
+    begin = time.monotonic()
+    senders = [Sender(services[number % len(services)], count // SENDERS) for number in range(SENDERS)]
+    for sender in senders:
+        sender.start()
+    for sender in senders:
+        sender.join()
+    if any(sender.refused for sender in senders):
+        raise RuntimeError("submissions were refused")
+    return count / (time.monotonic() - begin)
+
+
+class Jobs:
+    """The jobs that are submitted from here on, by what the database says of them."""
+
+    def __init__(self, postgres):
+        self.postgres = postgres
+        ((self.last,),) = self._rows("coalesce(max(sequence), 0) AS last")
+
+    def _rows(self, what, condition="true"):
+        return self.postgres.rows(DATABASE, f"SELECT /* load */ {what} FROM jobs WHERE {condition}")
+
+    def _of_them(self, what, condition="true"):
+        return self._rows(what, f"sequence > {self.last} AND {condition}")[0][0]
+
+    def wait(self, count):
+        """Waits until as many have ended."""
+        end = time.monotonic() + 300.0
+        while self._of_them("count(*) AS ended", f"state IN ({FINAL_STATES})") < count:
+            if time.monotonic() > end:
+                raise RuntimeError("jobs have not ended")
+            time.sleep(0.5)
+
+    def good(self):
+        """How many were solved at the first attempt."""
+        return self._of_them("count(*) AS good", "state = 'succeeded' AND attempt = 1")
+
+    def rate(self, since):
+        """Ends a second, from the first of a stamp to the last end."""
+        return self._of_them(f"1e6 * count(*) / (max(finished_us) - min({since})) AS rate")
 
 
 def follow(service, identifier, arrivals):
@@ -137,39 +219,95 @@ def stopped(services, number):
     return took, arrivals[2:]
 
 
+def settled(postgres, count, submit_all):
+    """Submits jobs and waits for all of them; rate of the submission, and the jobs."""
+    jobs = Jobs(postgres)
+    accepted = submit_all(count)
+    jobs.wait(count)
+    return accepted, jobs
+
+
+def counted(table, postgres, services, count):
+    """Statements of a number of jobs."""
+    with Log(postgres) as log:
+        _, jobs = settled(postgres, count, lambda count: submit(services, count))
+        kinds = log.kinds()
+    table.row("tiny jobs solved, each once", str(jobs.good()), str(count), jobs.good() == count)
+    return kinds
+
+
+def timed(table, postgres, services, crew, count):
+    """Rates of a number of jobs, and the processor time of each, by kind of process."""
+    processors = Processors(postgres, services, crew)
+    accepted, jobs = settled(postgres, count, lambda count: submit(services, count))
+    spent = processors.per_job_ms(count)
+    rate = jobs.rate("submitted_us")
+    table.row("accepted a second, while jobs are solved", f"{accepted:.0f}", "", True)
+    table.timed("accepted and solved a second", f"{rate:.0f}", f"{GOAL_RATE:.0f}", rate >= GOAL_RATE)
+    table.row(f"of {count} timed, solved once", str(jobs.good()), str(count), jobs.good() == count)
+    return spent
+
+
+def drained(table, postgres, services, workers, stack, count):
+    """The rate of new workers that find a full queue, and the processor time of a job."""
+    jobs = Jobs(postgres)
+    accepted = submit(services, count)
+    table.row("accepted a second, while nothing else runs", f"{accepted:.0f}", "", True)
+    crew = [stack.enter_context(Worker(postgres.url())) for _ in range(workers)]
+    processors = Processors(postgres, services, crew)
+    jobs.wait(count)
+    rate = jobs.rate("started_us")
+    table.timed("solved a second, from a full queue", f"{rate:.0f}", f"{GOAL_RATE:.0f}", rate >= GOAL_RATE)
+    return crew, processors.per_job_ms(count)
+
+
+def answered(table, services):
+    """Stops through another process, and events at it."""
+    results = [stopped(services, number) for number in range(STOPS)]
+    slowest = percentile([took for took, _ in results], 0.99)
+    table.timed("stop through another process, p99", f"{slowest:.0f} ms", f"{GOAL_STOP_MS:.0f} ms", slowest < GOAL_STOP_MS)
+    arrivals = [late for _, late in results for late in late]
+    slowest = percentile(arrivals, 0.99)
+    table.timed(f"event at another process, p99 of {len(arrivals)}", f"{slowest:.0f} ms", f"{GOAL_EVENT_MS:.0f} ms", slowest < GOAL_EVENT_MS)
+
+
+def print_times(name, spent):
+    print(f"\nprocessor time of a job, {name}: {sum(spent.values()):.2f} ms")
+    for who, time_ms in spent.items():
+        print(f"  {time_ms:8.2f}  {who}")
+
+
+def print_kinds(name, kinds, share):
+    print(f"\nstatements of a {name}: {sum(kinds.values()) / share:.1f}")
+    for what, count in kinds.most_common():
+        print(f"  {count / share:8.2f}  {what}")
+
+
 def main(jobs, workers):
     table = Table()
-    with Postgres() as postgres:
-        services = [Service(postgres.url, "--no-worker", "--log", "error") for _ in range(2)]
-        crew = [Worker(postgres.url) for _ in range(workers)]
-        # Legs are solved once, before anything is measured.
-        services[0].wait_end(services[0].submit(fixture("two-targets")))
-        before = len(postgres.statements())
-        ended, submitted, took = tiny_jobs(services, jobs)
-        during = Counter(map(kind, postgres.statements()[before:]))
-        good = sum(job["state"] == "succeeded" and job["attempt"] == 1 for job in ended)
-        table.row("tiny jobs solved, each once", str(good), str(len(ended)), good == len(ended))
-        table.row("accepted a second", f"{len(ended) / submitted:.0f}", "", True)
-        table.row("solved a second", f"{len(ended) / took:.0f}", "", True)
-        results = [stopped(services, number) for number in range(STOPS)]
-        slowest = percentile([took for took, _ in results], 0.99)
-        table.timed("stop through another process, p99", f"{slowest:.0f} ms", f"{GOAL_STOP_MS:.0f} ms", slowest < GOAL_STOP_MS)
-        arrivals = [late for _, late in results for late in late]
-        slowest = percentile(arrivals, 0.99)
-        table.timed(f"event at another process, p99 of {len(arrivals)}", f"{slowest:.0f} ms", f"{GOAL_EVENT_MS:.0f} ms", slowest < GOAL_EVENT_MS)
-        before = len(postgres.statements())
-        time.sleep(IDLE_S)
-        idle = Counter(map(kind, postgres.statements()[before:]))
-        rate = sum(idle.values()) / IDLE_S / (workers + len(services))
+    with ExitStack() as stack:
+        postgres = stack.enter_context(Postgres("max_connections=400"))
+        arguments = ["--no-worker", "--log", "error", "--queue-limit", "100000"]
+        services = [stack.enter_context(Service(postgres.url(), *arguments)) for _ in range(2)]
+        with Worker(postgres.url(), "--log", "error") as one:
+            # Legs are solved once, before anything is measured.
+            services[0].wait_end(services[0].submit(fixture("two-targets")))
+            one.process.terminate()
+            one.process.wait(30)
+        crew, from_queue = drained(table, postgres, services, workers, stack, TIMED * jobs)
+        kinds = counted(table, postgres, services, jobs)
+        spent = timed(table, postgres, services, crew, TIMED * jobs)
+        answered(table, services)
+        with Log(postgres) as log:
+            time.sleep(IDLE_S)
+            idle = log.kinds()
+        processes = workers + len(services)
+        rate = sum(idle.values()) / IDLE_S / processes
         table.row("idle statements of a process a second", f"{rate:.2f}", "", True)
-        for process in crew:
-            process.__exit__()
-        for service in services:
-            service.__exit__()
-    for name, counts, share in [("tiny job", during, len(ended)), ("idle process and minute", idle, (workers + len(services)) * IDLE_S / 60)]:
-        print(f"\nstatements of a {name}: {sum(counts.values()) / share:.1f}")
-        for what, count in counts.most_common():
-            print(f"  {count / share:8.2f}  {what}")
+    print_times("from a full queue", from_queue)
+    print_times("with its submission", spent)
+    print_kinds("tiny job", kinds, jobs)
+    print_kinds("idle process and minute", idle, processes * IDLE_S / 60)
     table.exit()
 
 

@@ -12,6 +12,7 @@ mod pace;
 mod progress;
 pub(crate) mod retention;
 pub(crate) mod segments;
+mod shards;
 pub(crate) mod sharing;
 pub(crate) mod slews;
 mod solve;
@@ -26,6 +27,7 @@ use crate::jobs::desk::Desk;
 use crate::jobs::leg_cache::LegCache;
 use crate::jobs::leg_snapshot::LegsAtOnce;
 use crate::jobs::memory::JobMemory;
+use crate::jobs::shards::ShardOffer;
 use crate::store::{JobRow, Notice, QueueLimits, Store, StoreError, Submission, Submitted};
 use slewplan_solver::run::stop::StopSignal;
 use std::sync::Arc;
@@ -47,12 +49,16 @@ struct SharedJobs {
     desk: Desk,
     queue: QueueLimits,
     memory: JobMemory,
+    /// Whether parts of large tables of legs are offered to other processes.
+    spreads_legs: bool,
     metrics: Arc<JobMetrics>,
 }
 
 impl Jobs {
-    /// Jobs of a store with limits on the queue and on the memory of the jobs of this process, bytes.
-    pub(crate) fn new(store: Store, queue: QueueLimits, memory: u64) -> Self {
+    /// Jobs of a store with limits on the queue and on the memory of the jobs of this process, bytes; where
+    /// other processes use the store, parts of large tables of legs may be offered to them.
+    pub(crate) fn new(store: Store, queue: QueueLimits, memory: u64, spreads_legs: bool) -> Self {
+        let spreads_legs = spreads_legs && store.is_shared();
         Self(Arc::new(SharedJobs {
             store,
             changes: watch::Sender::new(0),
@@ -61,6 +67,7 @@ impl Jobs {
             desk: Desk::default(),
             queue,
             memory: JobMemory::new(memory),
+            spreads_legs,
             metrics: Arc::default(),
         }))
     }
@@ -73,6 +80,12 @@ impl Jobs {
     /// The leg cache, for one solve on threads outside of the runtime.
     pub(crate) fn legs(&self, runtime: Handle) -> LegCache {
         LegCache::new(self.store().clone(), runtime, Arc::clone(&self.0.metrics))
+    }
+
+    /// Offers parts of the tables of a leased job to other processes, where that is wanted.
+    fn shard_offer(&self, lease: &JobRow) -> Option<ShardOffer> {
+        let offers = self.0.spreads_legs && lease.parent.is_none();
+        offers.then(|| ShardOffer::new(self.clone(), lease.clone()))
     }
 
     /// The cached legs of one moment, for look-ups on threads outside of the runtime.

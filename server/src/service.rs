@@ -38,6 +38,8 @@ pub(crate) struct ServiceSettings {
     pub(crate) max_targets: usize,
     /// Limits on the number of queued jobs.
     pub(crate) queue: QueueLimits,
+    /// Whether parts of large tables of legs are offered to other processes.
+    pub(crate) spread_legs: bool,
     /// Memory limit of the jobs that are solved at once, bytes.
     pub(crate) job_memory: u64,
     /// Whether requests need no key, whatever the address.
@@ -253,7 +255,12 @@ async fn serve<E: From<ServiceError>>(
     }
     tokio::spawn(segments::delete_of_ended_jobs(store.clone()));
     tokio::spawn(upkeep::keep_within(store.clone(), settings.legs));
-    let jobs = Jobs::new(store.clone(), settings.queue, settings.job_memory);
+    let jobs = Jobs::new(
+        store.clone(),
+        settings.queue,
+        settings.job_memory,
+        settings.spread_legs,
+    );
     jobs.follow_others(boot_id.clone());
     let worker = Worker::start(&jobs, job_pools, &boot_id, lower_priority)
         .map_err(system("cannot start the worker"))?;

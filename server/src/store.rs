@@ -32,6 +32,7 @@ mod results;
 mod retention;
 mod roles;
 mod segments;
+mod shards;
 mod shared_clock;
 mod spacecraft;
 #[cfg(test)]
@@ -57,6 +58,7 @@ pub(crate) use packed::PackedPlan;
 pub(crate) use results::{NewIncumbent, ResultRow};
 pub(crate) use rows::{Counts, JobRow, JobState, ProgressRow, Work};
 pub(crate) use segments::SegmentRow;
+pub(crate) use shards::{NewShard, ShardedJob};
 pub(crate) use spacecraft::{SpacecraftName, SpacecraftRow};
 
 use database::Database;

@@ -32,6 +32,7 @@ mod several;
 mod side_by_side;
 mod slews;
 mod spacecraft;
+mod spreading;
 mod studies;
 mod tls;
 mod verify;

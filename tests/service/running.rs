@@ -169,6 +169,11 @@ impl Worker {
         Self::started(database, &[]).0
     }
 
+    /// Starts a worker that offers parts of large tables of legs.
+    pub(crate) fn spreading(database: &str) -> Self {
+        Self::started(database, &["--spread-legs"]).0
+    }
+
     /// Starts a worker that answers its metrics at the address that is returned.
     pub(crate) fn with_metrics(database: &str) -> (Self, String) {
         let (worker, mut told) = Self::started(database, &["--metrics", "127.0.0.1:0"]);

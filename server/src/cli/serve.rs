@@ -108,6 +108,7 @@ pub(super) fn run(arguments: &ServeArguments) -> Result<Exit, Failure> {
         },
         retain: arguments.retain.map(|days| DAY * days),
         job_memory: arguments.worker.job_memory(),
+        spread_legs: arguments.worker.spread_legs(),
         no_keys: arguments.no_keys,
         allowed_hosts: arguments.allowed_host.clone(),
         legs: arguments.leg_cache.into(),

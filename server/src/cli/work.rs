@@ -42,6 +42,7 @@ pub(super) fn run(arguments: &WorkArguments) -> Result<Exit, Failure> {
         threads: arguments.worker.threads(),
         jobs: arguments.worker.jobs(),
         job_memory: arguments.worker.job_memory(),
+        spread_legs: arguments.worker.spread_legs(),
     };
     working::run::<Failure>(&settings, |metrics| {
         let metrics = metrics.map(|address| format!("metrics on http://{address}\n"));

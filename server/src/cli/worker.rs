@@ -20,9 +20,18 @@ pub(super) struct WorkerOptions {
     #[arg(long, env = "SLEWPLAN_JOB_MEMORY", value_name = "MIB", default_value_t = 1024,
         value_parser = clap::value_parser!(u32).range(16..))]
     job_memory: u32,
+    /// Offer parts of large tables of legs to other processes on the same database of Postgres that have
+    /// nothing else to do
+    #[arg(long, env = "SLEWPLAN_SPREAD_LEGS")]
+    spread_legs: bool,
 }
 
 impl WorkerOptions {
+    /// Whether parts of large tables of legs are offered to other processes.
+    pub(super) fn spread_legs(&self) -> bool {
+        self.spread_legs
+    }
+
     /// Threads of the solver; one per core without it.
     pub(super) fn threads(&self) -> Option<usize> {
         self.threads.map(usize::from)

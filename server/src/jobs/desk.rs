@@ -102,6 +102,7 @@ impl Jobs {
             boot_id,
             lease_until_us: lease_end(self.store().lease_clock_us()),
             room,
+            takes_shards: self.0.memory.free().is_none(),
             at_most,
             begins_later,
         };

@@ -4,14 +4,18 @@ pub(crate) mod upkeep;
 
 use crate::base::clock::now_us;
 use crate::jobs::metrics::JobMetrics;
+use crate::jobs::shards::ShardOffer;
 use crate::store::{NewLeg, Store, StoreError};
-use slewplan_solver::tour::legs::{LegStore, StoredLeg, StoredTime};
+use slewplan_solver::tour::legs::{LegKind, LegStore, StoredLeg, StoredTime};
+use slewplan_solver::tour::order::Place;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use tokio::runtime::Handle;
 
 /// Number of legs that are looked up or written at once.
 pub(super) const BATCH: usize = 64;
+/// Number of legs that are looked up at once while others solve some of them.
+const SHARED_BATCH: usize = 8;
 /// Time after which a database that was away is asked again.
 const AWAY: Duration = Duration::from_secs(5);
 /// Maximum number of legs that wait for it, some 16 MB.
@@ -27,6 +31,7 @@ pub(crate) struct LegCache {
     runtime: Handle,
     metrics: Arc<JobMetrics>,
     unwritten: Unwritten,
+    offer: Option<ShardOffer>,
 }
 
 /// Solved legs that are not in the database yet.
@@ -124,7 +129,15 @@ impl LegCache {
             store,
             runtime,
             metrics,
+            offer: None,
         }
+    }
+
+    /// The same with parts of large tables offered to others.
+    pub(super) fn offering(self, offer: Option<ShardOffer>) -> Self {
+        let mut cache = self;
+        cache.offer = offer;
+        cache
     }
 
     /// The legs that are not in the database yet.
@@ -153,7 +166,21 @@ impl LegStore for LegCache {
     }
 
     fn batch(&self) -> usize {
-        BATCH
+        match &self.offer {
+            // What others have just solved shall be found.
+            Some(offer) if offer.has_offered() => SHARED_BATCH,
+            _ => BATCH,
+        }
+    }
+
+    fn is_shared(&self) -> bool {
+        self.offer.is_some()
+    }
+
+    fn offer(&self, kind: LegKind, pairs: &[(Place, Place)]) {
+        if let Some(offer) = &self.offer {
+            self.runtime.block_on(offer.offer(kind, pairs));
+        }
     }
 
     fn times(&self, identities: &[&str]) -> Vec<Option<StoredTime>> {

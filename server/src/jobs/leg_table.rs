@@ -89,7 +89,7 @@ fn attempt(query: &[u8], context: &JobContext<'_>, parts: &TableStore<'_>) -> En
 }
 
 /// A stored query. It was valid when it was accepted, perhaps by another version of the program.
-fn read(query: &[u8]) -> Result<LegQuery, Ended> {
+pub(super) fn read(query: &[u8]) -> Result<LegQuery, Ended> {
     let node = document::parse(query);
     let node = node.map_err(|problem| solve::refused(JobState::Failed, &[problem]))?;
     leg_query::read(&node).map_err(|refusal| match refusal {

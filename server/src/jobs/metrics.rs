@@ -61,7 +61,7 @@ impl Default for JobMetrics {
 impl JobMetrics {
     /// Counts the begin of a job's first attempt.
     pub(super) fn begun(&self, job: &JobRow) {
-        if let (1, Some(started)) = (job.attempt, job.started_us) {
+        if let (1, Some(started), None) = (job.attempt, job.started_us, job.parent) {
             let wait_us = started - job.submitted_us;
             self.waits
                 .with_label_values(&NO_LABELS)

@@ -10,6 +10,8 @@ const AHEAD_S: f64 = 0.05;
 const MAX_CLAIM: usize = 16;
 /// A claim takes at most one of so many waiting jobs: where few wait, other workers may be idle.
 const SHARE: usize = 8;
+/// What any job that is not tiny counts for in the average, s.
+const SLOW_S: f64 = 0.05;
 /// Weight of the newest job in the average.
 const WEIGHT: f64 = 0.2;
 
@@ -23,21 +25,20 @@ pub(super) struct Pace {
 }
 
 impl Pace {
-    /// Notes the time of a job that has ended, s. After one that was not tiny the next ones are not expected
-    /// to be.
+    /// Notes the time of a job that has ended, s.
     pub(super) fn ended(&mut self, solved_s: f64) {
         let average_s = match self.average_s {
             Some(average_s) if solved_s < TINY.as_secs_f64() => {
                 average_s + WEIGHT * (solved_s - average_s)
             }
-            _ => solved_s,
+            _ => solved_s.min(SLOW_S),
         };
         self.average_s = Some(average_s);
     }
 
-    /// Notes that a job takes longer than a tiny one.
+    /// Notes that a job takes longer than a tiny one: some tiny ones must follow until more are expected.
     pub(super) fn slow(&mut self) {
-        self.average_s = Some(TINY.as_secs_f64());
+        self.average_s = Some(SLOW_S);
     }
 
     /// Notes the number of jobs that waited.
@@ -84,12 +85,16 @@ mod tests {
         pace.ended(0.022);
         // The average is 6 ms.
         assert_eq!(pace.claim(), 8);
-        pace.ended(0.1);
-        assert!(!pace.is_fast());
-        assert_eq!(pace.claim(), 1);
-        pace.ended(0.002);
-        assert!(pace.is_fast());
-        pace.slow();
-        assert!(!pace.is_fast());
+        for end in [|pace: &mut Pace| pace.ended(60.0), Pace::slow] {
+            end(&mut pace);
+            assert!(!pace.is_fast());
+            assert_eq!(pace.claim(), 1);
+            pace.ended(0.002);
+            assert!(!pace.is_fast());
+            for _ in 0..4 {
+                pace.ended(0.002);
+            }
+            assert!(pace.is_fast());
+        }
     }
 }

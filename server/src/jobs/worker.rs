@@ -13,6 +13,7 @@ use super::leg_table::{self, TableStore};
 use super::memory::MemoryGuard;
 use super::progress::{Recorded, Reporter, record};
 use super::segments::SegmentCache;
+use super::shards;
 use super::solve::{self, JobContext};
 use crate::base::clock::now_us;
 use crate::store::{
@@ -163,6 +164,7 @@ impl WorkerThread {
             ended: solve::broken(),
             legs: Vec::new(),
             leaves_segments: true,
+            has_shards: true,
         });
         let solved_s = begin.elapsed().as_secs_f64();
         self.conclude(lease, job, worked, solved_s);
@@ -186,7 +188,8 @@ impl WorkerThread {
             stop.cancel();
         }
         let (reporter, reports) = Reporter::new();
-        let legs = self.jobs.legs(self.runtime.clone());
+        let offer = self.jobs.shard_offer(job);
+        let legs = self.jobs.legs(self.runtime.clone()).offering(offer.clone());
         let recorder = self.runtime.spawn(record(
             self.jobs.clone(),
             job.clone(),
@@ -226,6 +229,7 @@ impl WorkerThread {
             // Stored with the end of the job, so that its observers find them.
             legs: self.runtime.block_on(legs.unwritten().take()),
             leaves_segments: segments.leaves_something(),
+            has_shards: offer.is_some_and(|offer| offer.has_offered()),
         }
     }
 
@@ -236,6 +240,11 @@ impl WorkerThread {
         legs: &LegCache,
         context: &JobContext<'_>,
     ) -> Ended {
+        if let Some(parent) = job.parent {
+            let writing = self.runtime.spawn(legs.unwritten().keep_writing());
+            let _writing = AbortOnDrop(writing.abort_handle());
+            return self.solve_shard(lease, parent, context);
+        }
         match job.work() {
             Ok(Work::Plan) => solve::solve(&lease.scenario, context),
             Ok(Work::LegTable) => {
@@ -252,6 +261,28 @@ impl WorkerThread {
         }
     }
 
+    /// Solves a part of the table of another job. Its end is one that nobody sees: the part is deleted.
+    fn solve_shard(&self, lease: &Lease, parent: i64, context: &JobContext<'_>) -> Ended {
+        match self.runtime.block_on(self.jobs.store().sharded_job(parent)) {
+            Ok(Some(job)) => shards::solve(&lease.scenario, &job, context),
+            Ok(None) => {}
+            Err(error) => tracing::warn!(%error, "the job of a part of a table cannot be read"),
+        }
+        solve::without_plan(JobState::Cancelled, None, "a part of a table has no result")
+    }
+
+    /// Deletes a part of a table that is done. After an error it is done again, by look-ups.
+    fn end_shard(&self, job: &JobRow, legs: &[NewLeg]) {
+        let store = self.jobs.store();
+        let ended = self.runtime.block_on(async {
+            store.put_legs(legs, now_us()).await?;
+            store.end_shard(job).await
+        });
+        if let Err(error) = ended {
+            tracing::warn!(%error, "a part of a table is solved again");
+        }
+    }
+
     /// Leaves the end of a job on the desk. One that was interrupted by the end of the service is given back.
     fn conclude(&self, lease: Lease, job: JobRow, worked: Worked, solved_s: f64) {
         let interrupted =
@@ -264,12 +295,16 @@ impl WorkerThread {
         if interrupted && self.runtime.block_on(self.released(&job)) {
             return;
         }
+        if job.parent.is_some() {
+            return self.end_shard(&job, &worked.legs);
+        }
         self.jobs.0.desk.put(EndedJob {
             end: JobEnd {
                 begun: (!worked.begin_is_stored).then(|| job.clone()),
                 lease: job,
                 progress: worked.progress,
                 ended: worked.ended,
+                has_shards: worked.has_shards,
                 at_us: now_us(),
             },
             legs: worked.legs,
@@ -310,6 +345,7 @@ struct Worked {
     ended: Ended,
     legs: Vec<NewLeg>,
     leaves_segments: bool,
+    has_shards: bool,
 }
 
 /// Aborts a task when it is dropped.

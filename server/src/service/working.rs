@@ -25,6 +25,8 @@ pub(crate) struct WorkSettings {
     pub(crate) threads: Option<usize>,
     /// Number of jobs that are solved at once.
     pub(crate) jobs: usize,
+    /// Whether parts of large tables of legs are offered to other processes.
+    pub(crate) spread_legs: bool,
     /// Memory limit of the jobs that are solved at once, bytes.
     pub(crate) job_memory: u64,
 }
@@ -56,7 +58,12 @@ async fn work<E: From<ServiceError>>(
     let connections = settings.database_connections;
     let others = OtherProcesses::MayLive;
     let store = open_store(&settings.database, connections, others, &boot_id).await?;
-    let jobs = Jobs::new(store.clone(), NO_QUEUE, settings.job_memory);
+    let jobs = Jobs::new(
+        store.clone(),
+        NO_QUEUE,
+        settings.job_memory,
+        settings.spread_legs,
+    );
     let metrics = match settings.metrics {
         Some(address) => Some(serve_metrics(address, jobs.clone()).await?),
         None => None,

@@ -11,7 +11,7 @@ use super::writing::WriteTransaction;
 use super::{JobRow, JobState, StoreError, Work};
 use slewplan_solver::bounds;
 
-/// Up to this number of queued jobs are counted.
+/// Up to this number of queued jobs are counted, parts of tables of legs not among them.
 const COUNTED: i64 = 256;
 /// Maximum number of targets of a job whose begin may be stored later.
 const TINY_TARGETS: i64 = 12;
@@ -70,6 +70,8 @@ pub(crate) struct Claim<'a> {
     pub(crate) lease_until_us: i64,
     /// Memory for each of them.
     pub(crate) room: MemoryRoom,
+    /// Whether it takes parts of tables of legs too, since it has nothing else to do.
+    pub(crate) takes_shards: bool,
     /// Maximum number of jobs. All but the first are tiny.
     pub(crate) at_most: usize,
     /// Whether the begin of tiny jobs is stored later.
@@ -123,14 +125,15 @@ pub(super) async fn claim(
 ) -> Result<(Vec<Lease>, usize), StoreError> {
     let candidates: Vec<Candidate> = sql("SELECT sequence, work, targets, fence, memory_bytes, \
          (SELECT count(*) FROM (SELECT 1 FROM jobs WHERE state = 'queued' AND boot_id IS NULL \
-         LIMIT $4) AS counted) AS waiting \
+         AND parent IS NULL LIMIT $4) AS counted) AS waiting \
          FROM jobs WHERE state = 'queued' AND boot_id IS NULL \
-         AND (memory_bytes <= $1 OR submitted_us < $2) \
+         AND (memory_bytes <= $1 OR submitted_us < $2) AND ($5 OR parent IS NULL) \
          ORDER BY priority DESC, turn, sequence LIMIT $3 {skip_locked}")
     .bind(claim.room.bytes)
     .bind(claim.room.passed_over_since_us)
     .bind(i64::try_from(claim.at_most).unwrap_or(1))
     .bind(COUNTED)
+    .bind(claim.takes_shards)
     .fetch_all(&mut **transaction)
     .await?;
     let chosen = chosen(&candidates, claim);
@@ -147,9 +150,10 @@ pub(super) async fn claim(
     let mut leases: Vec<Lease> = sql(concat!(
         "UPDATE jobs SET state = CASE WHEN begins THEN 'running' ELSE state END, \
          attempt = CASE WHEN begins THEN attempt + 1 ELSE attempt END, fence = fence + 1, \
-         boot_id = $1, lease_until_us = CASE WHEN begins THEN $2 END, \
-         claimed_until_us = CASE WHEN begins THEN NULL ELSE $2 END, \
-         started_us = CASE WHEN begins THEN $3 ELSE started_us END, \
+         boot_id = $1, lease_until_us = CASE WHEN begins THEN CAST($2 AS bigint) END, \
+         claimed_until_us = CASE WHEN begins THEN NULL ELSE CAST($2 AS bigint) END, \
+         started_us = CASE WHEN NOT begins THEN started_us WHEN submitted_us > $3 THEN submitted_us \
+         ELSE CAST($3 AS bigint) END, \
          stage = NULL, done = NULL, total = NULL, \
          lower_bound_s = CASE bound_version WHEN $4 THEN lower_bound_s END, bound_version = $4, \
          incumbent_s = (SELECT total_time_s FROM incumbents WHERE job = jobs.sequence) \

@@ -6,7 +6,9 @@ use super::events::{self, NewEvent};
 use super::held::held;
 use super::legs::put_legs;
 use super::writing::WriteTransaction;
-use super::{EndCode, Ended, JobRow, JobState, NewLeg, ProgressRow, Store, StoreError, results};
+use super::{
+    EndCode, Ended, JobRow, JobState, NewLeg, ProgressRow, Store, StoreError, results, shards,
+};
 
 /// The end of a job that is to be stored.
 #[derive(Debug, Clone)]
@@ -19,6 +21,8 @@ pub(crate) struct JobEnd {
     pub(crate) progress: Option<ProgressRow>,
     /// How it ended.
     pub(crate) ended: Ended,
+    /// Whether parts of its tables of legs may be left.
+    pub(crate) has_shards: bool,
     /// When.
     pub(crate) at_us: i64,
 }
@@ -167,6 +171,9 @@ async fn end(
         }
     }
     results::store_results(transaction, &with_result).await?;
+    for end in ends.iter().filter(|end| end.has_shards) {
+        shards::delete(transaction, end.lease.sequence).await?;
+    }
     let changed: Vec<i64> = changed.into_iter().map(|job| job.sequence).collect();
     Ok(lost(ends.iter().map(|end| &end.lease), &changed))
 }

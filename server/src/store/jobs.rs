@@ -114,9 +114,9 @@ impl Store {
             "INSERT INTO jobs (id, state, work, name, scenario, targets, client, submitted_us, \
              priority, memory_bytes, turn) \
              VALUES ($1, 'queued', $2, $3, $4, $5, $6, $7, $8, $9, coalesce(\
-             (SELECT max(turn) + 1 FROM jobs WHERE state = 'queued' AND priority = $8 \
+             (SELECT max(turn) + 1 FROM jobs WHERE state = 'queued' AND parent IS NULL AND priority = $8 \
              AND client IS NOT DISTINCT FROM $6), \
-             (SELECT min(turn) FROM jobs WHERE state = 'queued' AND priority = $8), 0)) \
+             (SELECT min(turn) FROM jobs WHERE state = 'queued' AND parent IS NULL AND priority = $8), 0)) \
              RETURNING ",
             job_columns!()
         ))
@@ -222,7 +222,7 @@ impl Store {
         sql(concat!(
             "SELECT ",
             job_columns!(),
-            " FROM jobs WHERE ($1 IS NULL OR sequence < $1) AND ($2 IS NULL OR state = $2) \
+            " FROM jobs WHERE parent IS NULL AND ($1 IS NULL OR sequence < $1) AND ($2 IS NULL OR state = $2) \
              AND ($3 IS NULL OR name = $3) AND ($4 IS NULL OR client = $4) \
              AND work = $6 AND ($7 IS NULL OR lower(name) LIKE lower($7) ESCAPE '!' \
              OR id LIKE lower($7) ESCAPE '!') ORDER BY sequence DESC LIMIT $5"
@@ -245,17 +245,19 @@ impl Store {
 
     /// When the job was submitted that has waited longest of those that are queued; `None` when none is.
     pub(crate) async fn waiting_since_us(&self) -> Result<Option<i64>, StoreError> {
-        let (since,) = sql("SELECT min(submitted_us) FROM jobs WHERE state = 'queued'")
-            .fetch_one(&self.database)
-            .await?;
+        let (since,) =
+            sql("SELECT min(submitted_us) FROM jobs WHERE state = 'queued' AND parent IS NULL")
+                .fetch_one(&self.database)
+                .await?;
         Ok(since)
     }
 
     /// Number of jobs in every state.
     pub(crate) async fn counts(&self) -> Result<Vec<Counts>, StoreError> {
-        let rows: Vec<(String, i64)> = sql("SELECT state, count(*) FROM jobs GROUP BY state")
-            .fetch_all(&self.database)
-            .await?;
+        let rows: Vec<(String, i64)> =
+            sql("SELECT state, count(*) FROM jobs WHERE parent IS NULL GROUP BY state")
+                .fetch_all(&self.database)
+                .await?;
         let of = |state: JobState| rows.iter().find(|(text, _)| text == state.into_str());
         Ok(JobState::VARIANTS
             .iter()
@@ -287,7 +289,7 @@ async fn refusal(
 }
 
 async fn queued<'c>(on: impl Into<Handle<'c>>) -> Result<i64, StoreError> {
-    let (count,) = sql("SELECT count(*) FROM jobs WHERE state = 'queued'")
+    let (count,) = sql("SELECT count(*) FROM jobs WHERE state = 'queued' AND parent IS NULL")
         .fetch_one(on)
         .await?;
     Ok(count)
@@ -297,7 +299,7 @@ async fn find<'c>(on: impl Into<Handle<'c>>, id: &str) -> Result<Option<JobRow>,
     sql(concat!(
         "SELECT ",
         job_columns!(),
-        " FROM jobs WHERE id = $1"
+        " FROM jobs WHERE id = $1 AND parent IS NULL"
     ))
     .bind(id)
     .fetch_optional(on)

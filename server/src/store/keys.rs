@@ -96,8 +96,10 @@ impl Store {
 
     /// How much belongs to nobody: what was made without keys.
     pub(crate) async fn ownerless(&self) -> Result<Possessions, StoreError> {
-        let (jobs, spacecraft) = sql("SELECT (SELECT count(*) FROM jobs WHERE client IS NULL), \
-             (SELECT count(DISTINCT name) FROM spacecraft WHERE name NOT LIKE '% %')")
+        let (jobs, spacecraft) = sql(
+            "SELECT (SELECT count(*) FROM jobs WHERE client IS NULL AND parent IS NULL), \
+             (SELECT count(DISTINCT name) FROM spacecraft WHERE name NOT LIKE '% %')",
+        )
         .fetch_one(&self.database)
         .await?;
         Ok(Possessions { jobs, spacecraft })

@@ -52,8 +52,8 @@ impl Store {
     ) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
         let prolonged = sql(concat!(
-            "UPDATE jobs SET lease_until_us = CASE state WHEN 'running' THEN $1 END, \
-             claimed_until_us = CASE state WHEN 'queued' THEN $1 END \
+            "UPDATE jobs SET lease_until_us = CASE state WHEN 'running' THEN CAST($1 AS bigint) END, \
+             claimed_until_us = CASE state WHEN 'queued' THEN CAST($1 AS bigint) END \
              FROM {rows $2 leased bigint, held bigint} AS lease WHERE ",
             is_held!()
         ))

@@ -20,7 +20,7 @@ macro_rules! migration {
 }
 
 /// Number, name and statements of every migration, oldest first.
-const HISTORY: [(&str, &str, &str); 15] = [
+const HISTORY: [(&str, &str, &str); 17] = [
     migration!("0001", "service"),
     migration!("0002", "incumbents"),
     migration!("0003", "reversible_legs"),
@@ -36,6 +36,8 @@ const HISTORY: [(&str, &str, &str); 15] = [
     migration!("0041", "leg_tables"),
     migration!("0042", "turns"),
     migration!("0050", "job_memory"),
+    migration!("0060", "claims"),
+    migration!("0061", "leg_shards"),
 ];
 
 /// What brings a file of SQLite to the schema of this version.
@@ -91,6 +93,8 @@ mod tests {
             "0041 b608bff618f759ca",
             "0042 7e2e9a45d65381cb",
             "0050 d0ab5f87f886f332",
+            "0060 74212811e78bc568",
+            "0061 ab0b578c3136576b",
         ];
         assert_eq!(HISTORY.map(digest), expected);
     }

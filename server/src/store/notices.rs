@@ -197,21 +197,18 @@ async fn listen(notices: &Notices, act: &impl Fn(Notice)) -> Result<(), StoreErr
     notices.keys.notify_one();
     act(Notice::Missed);
     loop {
-        match listener.try_recv().await? {
-            Some(notification) => {
-                let notice = notices.foreign(&notification);
-                if notice == Some(Notice::Keys) {
-                    notices.keys.notify_one();
-                }
-                if let Some(notice) = notice {
-                    act(notice);
-                }
-            }
+        let Some(notification) = listener.try_recv().await? else {
             // The connection was lost, and there is a new one.
-            None => {
-                notices.keys.notify_one();
-                act(Notice::Missed);
-            }
+            notices.keys.notify_one();
+            act(Notice::Missed);
+            continue;
+        };
+        let notice = notices.foreign(&notification);
+        if notice == Some(Notice::Keys) {
+            notices.keys.notify_one();
+        }
+        if let Some(notice) = notice {
+            act(notice);
         }
     }
 }

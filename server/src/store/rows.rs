@@ -123,6 +123,8 @@ row! {
         pub(crate) started_us: Option<i64>,
         /// When it ended.
         pub(crate) finished_us: Option<i64>,
+        /// The job for which it solves a part of a table of legs; callers do not see such a job.
+        pub(crate) parent: Option<i64>,
     }
 }
 
@@ -137,7 +139,8 @@ impl JobRow {
         Self {
             state: JobState::Running.into_str().to_owned(),
             attempt: self.attempt + 1,
-            started_us: Some(now_us),
+            // Another machine's clock may have been ahead.
+            started_us: Some(now_us.max(self.submitted_us)),
             ..self.clone()
         }
     }

@@ -3,6 +3,7 @@
 use super::database::statement::{Value, sql};
 use super::held::held;
 use super::{JobRow, Store, StoreError};
+use std::collections::BTreeMap;
 
 /// Segments of other versions of the solver are not found.
 const SOLVER_VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -53,7 +54,12 @@ impl Store {
         if held.is_none() {
             return Ok(false);
         }
-        let rows = segments.iter().map(|segment| {
+        // A statement must not store a segment twice; of two the last one counts.
+        let by_name: BTreeMap<&str, &SegmentRow> = segments
+            .iter()
+            .map(|segment| (&*segment.name, segment))
+            .collect();
+        let rows = by_name.into_values().map(|segment| {
             let name = Value::from(&segment.name);
             let motion = Value::from(&segment.motion);
             [

@@ -12,6 +12,7 @@ mod postgres;
 mod queue;
 mod races;
 mod schema;
+mod shards;
 mod sqlite;
 mod statements;
 
@@ -102,6 +103,7 @@ impl Store {
             boot_id,
             lease_until_us,
             room,
+            takes_shards: true,
             at_most: 1,
             begins_later: false,
         };
@@ -120,6 +122,7 @@ impl Store {
             begun: None,
             progress: None,
             ended: ended.clone(),
+            has_shards: false,
             at_us: now_us,
         };
         let exchange = Exchange {
@@ -354,8 +357,14 @@ fn segments_are_kept_for_the_next_attempt_and_deleted_after_the_job() {
         };
         submitted(&store).await;
         let lost = lease(&store, "first").await.job;
+        let older = SegmentRow {
+            motion: vec![6; 24],
+            ..segment.clone()
+        };
+        // Of two of one name in a batch the last one counts.
+        let both = [older, segment.clone()];
+        assert!(store.put_segments(&lost, &both).await.expect("written"));
         let kept = [segment.clone()];
-        assert!(store.put_segments(&lost, &kept).await.expect("written"));
         store
             .recover("second", OtherProcesses::Ended, 3)
             .await

@@ -11,6 +11,7 @@
 
 use crate::model::input::input_choice;
 use crate::model::motion::Motion;
+use crate::tour::order::Place;
 
 input_choice! {
     /// Which boundary conditions a tabulated leg has.
@@ -104,6 +105,15 @@ pub trait LegStore: Sync {
 
     /// Remembers a leg.
     fn put(&self, identity: &str, leg: &StoredLeg);
+
+    /// Whether others may solve some of the legs of a large table, and store them here.
+    fn is_shared(&self) -> bool {
+        false
+    }
+
+    /// Offers legs of a kind to others, which are going to be solved here in this order. What others have
+    /// solved is found when its turn comes, and what they have not is solved here.
+    fn offer(&self, _kind: LegKind, _pairs: &[(Place, Place)]) {}
 }
 
 /// The flight through several places in a row, solved as one program.

@@ -6,7 +6,7 @@ use crate::store::database::statement::{Value, sql};
 use crate::store::writing::WriteTransaction;
 use crate::store::{Store, StoreError};
 use slewplan_solver::bounds;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Maximum number of legs of one statement.
 const BATCH: usize = 64;
@@ -33,10 +33,16 @@ pub(in crate::store) async fn put_legs(
         return Ok(0);
     }
     transaction.take_turn(Turn::Legs).await?;
+    let keys: Vec<String> = legs.iter().map(|leg| key(&leg.identity)).collect();
     // A statement must not store a leg twice; of two the last one counts.
-    let by_key: BTreeMap<String, &NewLeg> =
-        legs.iter().map(|leg| (key(&leg.identity), leg)).collect();
-    let different: Vec<_> = by_key.iter().collect();
+    let last: HashMap<_, _> = keys.iter().enumerate().map(|(i, key)| (key, i)).collect();
+    let different: Vec<_> = keys
+        .iter()
+        .zip(legs)
+        .enumerate()
+        .filter(|(i, (key, _))| last.get(key) == Some(i))
+        .map(|(_, leg)| leg)
+        .collect();
     let mut new = 0;
     for batch in different.chunks(BATCH) {
         new += put_batch(transaction, batch, now_us).await?;
@@ -46,7 +52,7 @@ pub(in crate::store) async fn put_legs(
 
 async fn put_batch(
     transaction: &mut WriteTransaction,
-    legs: &[(&String, &&NewLeg)],
+    legs: &[(&String, &NewLeg)],
     now_us: i64,
 ) -> Result<u64, StoreError> {
     let spacecraft: BTreeMap<String, &str> = legs

@@ -32,6 +32,7 @@ fn claim(at_most: usize) -> Claim<'static> {
         boot_id: "first",
         lease_until_us: 1_000,
         room: MemoryRoom::ALL,
+        takes_shards: false,
         at_most,
         begins_later: true,
     }
@@ -67,6 +68,7 @@ fn end(job: &JobRow, begun_us: Option<i64>) -> JobEnd {
         begun: begun_us.map(|begun_us| job.begun(begun_us)),
         progress: Some(progress),
         ended: ended(JobState::Succeeded, Some(plan(20.0))),
+        has_shards: false,
         at_us: 9,
     }
 }

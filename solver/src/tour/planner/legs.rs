@@ -22,7 +22,7 @@ use crate::run::stop::{StopReason, StopSignal};
 use crate::tour::legs::{LegKind, SegmentStore, StoredLeg};
 use crate::tour::order::Place;
 use std::collections::HashMap;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
@@ -130,6 +130,7 @@ impl<'a> LegSolver<'a> {
     ) -> Vec<Option<TabulatedLeg>> {
         let tell = |done, total| self.report_progress(done, Some(total));
         let mut canonical = self.all_canonical(kind, pairs);
+        self.offer(kind, pairs, &canonical);
         self.solve_missing(kind, &canonical, tell);
         if !self.places.with_cones.cones.is_empty() {
             let legs: Vec<_> = pairs.iter().zip(&canonical).collect();
@@ -287,6 +288,19 @@ impl<'a> LegSolver<'a> {
         reason.is_some_and(|reason| reason != StopReason::Requested)
     }
 
+    /// Offers the legs to others that are not stored, where somebody may take them.
+    fn offer(&self, kind: LegKind, pairs: &[(Place, Place)], canonical: &[Option<CanonicalLeg>]) {
+        if !self.run.legs.is_shared() {
+            return;
+        }
+        let missing = missing_from(&lock(&self.known), canonical);
+        let identities: Vec<_> = missing.iter().map(|(_, leg)| &*leg.identity).collect();
+        let times = self.run.legs.times(&identities);
+        let unsolved = missing.iter().zip(times).filter(|(_, time)| time.is_none());
+        let unsolved: Vec<_> = unsolved.map(|((place, _), _)| pairs[*place]).collect();
+        self.run.legs.offer(kind, &unsolved);
+    }
+
     fn solve_missing(
         &self,
         kind: LegKind,
@@ -298,8 +312,11 @@ impl<'a> LegSolver<'a> {
         let total = missing.len() as u64;
         let legs: Vec<_> = missing.into_iter().map(|(_, leg)| leg).collect();
         let ahead = LegsAhead::new(self.run.legs, &legs);
-        let legs: Vec<_> = legs.into_iter().enumerate().collect();
-        self.run.pool.map(&legs, |&(place, leg)| {
+        // In the order of the list, whichever worker is free: others may solve its end.
+        let next = AtomicUsize::new(0);
+        self.run.pool.map(&legs, |_| {
+            let place = next.fetch_add(1, Relaxed);
+            let leg = legs[place];
             // With thousands of legs, store look-ups alone would delay the stop noticeably.
             if self.is_abandoned() {
                 return;

@@ -2,7 +2,7 @@
 //! of the same with unequal ramps, of the random suite, and tours of the published experiments.
 //!
 //! Of every class first the bounds that steer the search, by boxes of rates, then the strongest that are
-//! proved.
+//! proved. The argument is a part of the names of the classes that are wanted.
 
 use slewplan_solver::model::spec::ScenarioSpec;
 use slewplan_solver::tour::legs::LegKind;
@@ -15,6 +15,15 @@ use std::time::Instant;
 /// Torques of the published wheels for unequal ramps, N m: ramp times in the ratios 2 : 1 : 5.
 const UNEQUAL: [f64; 3] = [0.005, 0.0101, 0.002];
 
+/// The groups of the random suite.
+const GROUPS: [&str; 5] = [
+    "suite, any axes",
+    "suite, momentum",
+    "suite, any axes, rate limits",
+    "suite, momentum, rate limits",
+    "suite, little momentum, rate limits",
+];
+
 /// Shares of the duration of a leg that are proved.
 struct Share {
     boxed: Option<f64>,
@@ -22,6 +31,29 @@ struct Share {
 }
 
 fn main() {
+    let asked = std::env::args().nth(1).unwrap_or_default();
+    let is_asked = |name: &str| name.contains(&asked);
+    if is_asked("published") {
+        published();
+    }
+    for (group, name) in GROUPS.into_iter().enumerate() {
+        if is_asked(name) {
+            suite(group as u64, name);
+        }
+    }
+    for (name, spec) in [
+        ("experiment A", experiment_a_spec()),
+        ("experiment B", experiment_b_spec()),
+        ("experiment C", experiment_c_spec()),
+    ] {
+        if is_asked(name) {
+            tour(name, &spec);
+        }
+    }
+}
+
+/// The legs of the published table, and of the same with unequal ramps.
+fn published() {
     let mut published = experiment_c_spec();
     published.end = None;
     for target in &mut published.targets {
@@ -35,30 +67,16 @@ fn main() {
     }
     published.targets.truncate(10);
     report("published, unequal ramps", &self::pairs(&published));
-    for (group, name) in [
-        "suite, any axes",
-        "suite, momentum",
-        "suite, any axes, rate limits",
-        "suite, momentum, rate limits",
-        "suite, little momentum, rate limits",
-    ]
-    .into_iter()
-    .enumerate()
-    {
-        let crafts = (0..SPACECRAFT).filter(|craft| craft / 4 == group as u64);
-        let legs = crafts.flat_map(|craft| (0..LEGS_PER_SPACECRAFT).map(move |n| leg(craft, n)));
-        let shares: Vec<_> = legs
-            .flat_map(|spec| shares(&spec, &rows(&spec, 2)))
-            .collect();
-        report(name, &shares);
-    }
-    for (name, spec) in [
-        ("A", experiment_a_spec()),
-        ("B", experiment_b_spec()),
-        ("C", experiment_c_spec()),
-    ] {
-        tour(name, &spec);
-    }
+}
+
+/// The legs of a group of spacecraft of the random suite.
+fn suite(group: u64, name: &str) {
+    let crafts = (0..SPACECRAFT).filter(|craft| craft / 4 == group);
+    let legs = crafts.flat_map(|craft| (0..LEGS_PER_SPACECRAFT).map(move |n| leg(craft, n)));
+    let shares: Vec<_> = legs
+        .flat_map(|spec| shares(&spec, &rows(&spec, 2)))
+        .collect();
+    report(name, &shares);
 }
 
 /// The bounds on the tour of an experiment, and on the legs of its plan.
@@ -77,7 +95,7 @@ fn tour(name: &str, spec: &ScenarioSpec) {
     let time = begin.elapsed().as_secs_f64();
     let share = |bound: Option<f64>| bound.map_or(f64::NAN, |bound| bound / plan.total_time_s);
     println!(
-        "experiment {name}: tour {:.4}, strongest {:.4}, in {time:.3} s",
+        "{name}: tour {:.4}, strongest {:.4}, in {time:.3} s",
         share(plan.certified_lower_bound_s),
         share(tour_s)
     );

@@ -62,7 +62,7 @@ use crate::model::dynamics::{Dynamics, along, component};
 use crate::model::scenario::RateCondition;
 use crate::model::tolerances::{ATTITUDE_TOLERANCE, LIMIT_TOLERANCE, RATE_TOLERANCE};
 use crate::model::waypoint::Waypoint;
-use momentum::MomentumBounds;
+use momentum::{HeldSlew, MomentumBounds};
 use nalgebra::{Matrix3, Vector3};
 use norms::Norms;
 use rolls::{given_away, least_over_rolls};
@@ -71,7 +71,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Version of the mathematics of the bounds. A stored bound of another version is not used: raise it
 /// whenever a bound that was given before could be above one that is given now.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 
 /// Tolerances are given away with a thousandth more, far above the rounding of turns and the errors of
 /// the checker's integration.
@@ -199,9 +199,12 @@ impl CertifiedBounds {
             return least_over_rolls(ends, |ends, halves| self.around_rolls(ends, halves));
         }
         if let Some(bounds) = &self.momentum {
-            let turn = from.attitude.turn_to(&to.attitude);
-            let held = ends.map(|end| end.attitude.to_body(*momentum));
-            return bounds.leg(&turn, &held, &ends.map(rate_limits), TOLERANCE);
+            let slew = HeldSlew {
+                turn: from.attitude.turn_to(&to.attitude),
+                held: ends.map(|end| end.attitude.to_body(*momentum)),
+                ends: ends.map(rate_limits),
+            };
+            return bounds.leg(&slew, TOLERANCE);
         }
         Some(self.around_rolls(ends, [0.0; 2])?.bound_s)
     }

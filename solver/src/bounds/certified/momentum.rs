@@ -17,26 +17,47 @@
 //! ```
 //!
 //! whose second term along `d` is at most `|H| max_w |(J_eff^-1 d - k d) x w|`; this is convex in
-//! `w`, so its maximum is at a corner of the box of rates. Limits on `w` hold for `v` up to
+//! `w`, so its maximum is at a corner of the box of rates. It vanishes at rest, so slews that begin and
+//! end at rest have gentler ramps ([`growth`]). Limits on `w` hold for `v` up to
 //! `k |H|`. Rest at an end means `v = -k R^T H`, which is known there. Slews with a drift are
 //! bounded in [`crate::bounds::kinematic`]. The tolerances are given away as without momentum. Any
 //! `k` is valid. The middle of the eigenvalues of `J^-1` makes the box narrow; zero, with the box of
 //! all rates, is better where rates have limits of their own.
+//!
+//! As without momentum a box fits best across the facet that limits the turn: that which is left to be
+//! made, relative to the drift, after the time that two fixed frames exclude. Whatever some box excludes is
+//! where all others go on.
 
-use super::{BodyFrame, MISSED_ATTITUDE, exceeded};
-use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
-use crate::bounds::kinematic::ramps::SlewBound;
-use crate::model::attitude::Attitude;
-use crate::model::dynamics::{Dynamics, along};
-use nalgebra::{Matrix3, Vector3};
-
+mod growth;
 #[cfg(test)]
 mod tests;
+
+use super::{BodyFrame, MAX_PREPARED, MISSED_ATTITUDE, MISSED_RATE, exceeded};
+use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
+use crate::bounds::kinematic::ramps::SlewBound;
+use crate::bounds::kinematic::rate_envelope::RateEnvelope;
+use crate::model::attitude::Attitude;
+use crate::model::dynamics::facets::{Facets, FrameKey};
+use crate::model::dynamics::{Dynamics, along};
+use growth::RateGrowth;
+use nalgebra::{Matrix3, Vector3};
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Rounds over all boxes, most of which exclude nothing more after the first.
+const MAX_ROUNDS: usize = 4;
 
 /// Bounds on the slews of a spacecraft with momentum.
 #[derive(Debug)]
 pub(super) struct MomentumBounds {
+    spacecraft: Dynamics,
+    facets: Facets,
+    /// The values of `k`, 1/(kg m²).
+    shares: [f64; 2],
+    /// The frames that every leg tries.
     frames: Vec<DriftingFrame>,
+    /// Those across facets, with each share, as they were first needed.
+    fitted: Mutex<HashMap<FrameKey, Arc<[Option<DriftingFrame>; 2]>>>,
 }
 
 /// Limits of all motions relative to a drift, with their bound.
@@ -45,11 +66,24 @@ struct DriftingFrame {
     frame: BodyFrame,
     /// `k`, 1/(kg m²).
     share: f64,
+    /// The limits of slews that begin and end at rest.
+    from_rest: SlewLimits,
     bound: SlewBound,
 }
 
+/// A slew.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct HeldSlew {
+    /// The turn that it makes.
+    pub(super) turn: Attitude,
+    /// The momentum at begin and end, N m s, body axes there.
+    pub(super) held: [Vector3<f64>; 2],
+    /// Limits of the rates there, rad/s, body axes.
+    pub(super) ends: [Vector3<f64>; 2],
+}
+
 impl MomentumBounds {
-    /// The bounds in some orthonormal frames, given as columns in body axes.
+    /// The bounds in some orthonormal frames, given as columns in body axes, and in others that fit.
     pub(super) fn of(dynamics: &Dynamics, frames: &[Matrix3<f64>]) -> Self {
         let shares = [0.0, dynamics.mean_inverse_inertia()];
         let all = frames
@@ -59,6 +93,10 @@ impl MomentumBounds {
             frames: all
                 .filter_map(|(axes, share)| DriftingFrame::of(dynamics, axes, share))
                 .collect(),
+            facets: Facets::of(dynamics),
+            spacecraft: dynamics.clone(),
+            shares,
+            fitted: Mutex::default(),
         }
     }
 
@@ -68,38 +106,44 @@ impl MomentumBounds {
         without_drift.map(|drifting| drifting.frame)
     }
 
-    /// Lower bound, s, on the duration of a slew that makes a turn, with the momentum, N m s, and
-    /// limits of the rates at its two ends, all in body axes there.
-    pub(super) fn leg(
-        &self,
-        turn: &Attitude,
-        held: &[Vector3<f64>; 2],
-        ends: &[Vector3<f64>; 2],
-        tolerance: f64,
-    ) -> Option<f64> {
-        self.frames
-            .iter()
-            .filter_map(|drifting| {
-                let DriftingFrame {
-                    frame,
-                    share,
-                    bound,
-                } = drifting;
-                let drifts = held.map(|held| frame.axes.tr_mul(&held) * *share);
-                // Where the attitude is missed by an angle, so is the direction of the drift.
-                let turned = drifts[0].norm() * MISSED_ATTITUDE;
-                let limits = [0, 1].map(|end| {
-                    let most = frame.limits_in_axes(&ends[end]) + drifts[end].abs();
-                    most.add_scalar(turned)
-                });
-                let ends = EndRates {
-                    begin_rad_s: limits[0],
-                    end_rad_s: limits[1],
-                };
-                let turn = turn.seen_from(&frame.axes)?;
-                Some(bound.drifting_lower_bound_s(&turn, &drifts[0], ends, tolerance))
-            })
-            .reduce(f64::max)
+    /// Lower bound, s, on the duration of a slew; `None` without limits of speed.
+    pub(super) fn leg(&self, slew: &HeldSlew, tolerance: f64) -> Option<f64> {
+        if self.frames.is_empty() {
+            return None;
+        }
+        let raised = |known, frame: &DriftingFrame| frame.raised(slew, known, tolerance);
+        let mut known = self.frames.iter().fold(0.0, raised);
+        let drift = slew.held[0] * self.shares[1];
+        let left = Attitude::from_rotation_vector(-drift * known).then_in_body(&slew.turn);
+        let identity = Attitude::identity();
+        let left = identity.signed_turn_to(&left.nearest_sign(&identity));
+        let keys = self.facets.frames(&left).into_iter();
+        let fitted: Vec<_> = keys.map(|key| self.fitted(key)).collect();
+        for _ in 0..MAX_ROUNDS {
+            let before = known;
+            let across = fitted.iter().flat_map(|frames| frames.iter().flatten());
+            known = across.chain(&self.frames).fold(known, raised);
+            if known - before <= tolerance * known {
+                break;
+            }
+        }
+        Some(known)
+    }
+
+    fn fitted(&self, key: FrameKey) -> Arc<[Option<DriftingFrame>; 2]> {
+        let lock = || self.fitted.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = lock().get(&key) {
+            return Arc::clone(known);
+        }
+        // Computed without the lock: two threads may prepare the same, with the same result.
+        let axes = self.facets.axes(key);
+        let with = |share| DriftingFrame::of(&self.spacecraft, axes, share);
+        let fresh = Arc::new(self.shares.map(with));
+        let mut known = lock();
+        if known.len() < MAX_PREPARED {
+            known.insert(key, Arc::clone(&fresh));
+        }
+        fresh
     }
 }
 
@@ -114,14 +158,66 @@ impl DriftingFrame {
         let acceleration = |axis: &Vector3<f64>| {
             dynamics.reachable_acceleration(axis) + dynamics.gyroscopic_acceleration(axis, share)
         };
-        let limits = exceeded(SlewLimits {
+        let reached = SlewLimits {
             rates_rad_s: along(&axes, rate),
             accelerations_rad_s2: along(&axes, acceleration),
+        };
+        let growth = RateGrowth::of(dynamics);
+        let slopes = Vector3::from_fn(|axis, _| {
+            let direction = axes.column(axis).into_owned();
+            growth.slope(
+                dynamics.reachable_acceleration(&direction),
+                dynamics.gyroscopic_acceleration(&direction, share),
+                reached.rates_rad_s[axis],
+            )
+        });
+        let from_rest = exceeded(SlewLimits {
+            accelerations_rad_s2: slopes,
+            ..reached
         });
         Some(Self {
-            frame: BodyFrame { axes, limits },
+            frame: BodyFrame {
+                axes,
+                limits: exceeded(reached),
+            },
             share,
-            bound: SlewBound::new(limits, EndRates::at_rest())?.missing(MISSED_ATTITUDE),
+            from_rest,
+            bound: SlewBound::new(from_rest, EndRates::at_rest())?.missing(MISSED_ATTITUDE),
         })
+    }
+
+    /// The larger of a bound on the duration of a slew, s, and that of this frame.
+    fn raised(&self, slew: &HeldSlew, known_s: f64, tolerance: f64) -> f64 {
+        let axes = &self.frame.axes;
+        let drifts = slew.held.map(|held| axes.tr_mul(&held) * self.share);
+        // Where the attitude is missed by an angle, so is the direction of the drift.
+        let turned = drifts[0].norm() * MISSED_ATTITUDE;
+        let ends = [0, 1].map(|end| {
+            let most = self.frame.limits_in_axes(&slew.ends[end]) + drifts[end].abs();
+            most.add_scalar(turned)
+        });
+        let envelope = RateEnvelope {
+            limits: if slew.rests() {
+                self.from_rest
+            } else {
+                self.frame.limits
+            },
+            ends: EndRates {
+                begin_rad_s: ends[0],
+                end_rad_s: ends[1],
+            },
+        };
+        let Some(turn) = slew.turn.seen_from(axes) else {
+            return known_s;
+        };
+        self.bound
+            .drifting_lower_bound_s(&turn, &drifts[0], &envelope, known_s, tolerance)
+    }
+}
+
+impl HeldSlew {
+    /// Whether both ends are at rest.
+    fn rests(&self) -> bool {
+        self.ends.iter().all(|end| end.max() <= MISSED_RATE)
     }
 }

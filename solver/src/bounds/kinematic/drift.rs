@@ -19,7 +19,6 @@
 //! Where attitudes are missed by `E_0` and `E_1`, the drift in body axes is `E_0^T W_0` at the
 //! beginning, and the turn to be made is `E_0^T Q(T) E_1`: as much less counts as without a drift.
 
-use super::limits::EndRates;
 use super::ramps::{DEFLATION, SlewBound, rounded_down};
 use super::rate_envelope::RateEnvelope;
 use crate::model::attitude::Attitude;
@@ -32,27 +31,23 @@ const NO_TURN: f64 = 1e-8;
 
 impl SlewBound {
     /// Lower bound, s, on the duration of a slew with a drift that makes a turn in body axes (as in
-    /// [`Self::lower_bound_s`]). The limits are those of the rate relative to axes that turn at a
-    /// constant rate in space, `drift_rad_s`, given in body axes at the beginning. `ends` are end
-    /// rates relative to these axes too: a slew from rest starts with the negative drift. The boxes
-    /// are those made for the ends of [`Self::new`]; any boxes are valid.
+    /// [`Self::lower_bound_s`]). The envelope is that of the rate relative to axes that turn at a
+    /// constant rate in space, `drift_rad_s`, given in body axes at the beginning; so are the rates at the
+    /// ends: a slew from rest starts with the negative drift. The boxes are those of [`Self::new`]; any
+    /// boxes are valid. Durations below `known_s` are excluded already, by whatever argument.
     ///
     /// The result is valid for any tolerance, and within the relative tolerance of the best bound
     /// that this argument gives.
-    #[must_use]
-    pub fn drifting_lower_bound_s(
+    pub(crate) fn drifting_lower_bound_s(
         &self,
         turn: &Attitude,
         drift_rad_s: &Vector3<f64>,
-        ends: EndRates,
+        envelope: &RateEnvelope,
+        known_s: f64,
         tolerance: f64,
     ) -> f64 {
-        let envelope = RateEnvelope {
-            ends,
-            ..self.envelope
-        };
         let at_end = turn.to_body(*drift_rad_s);
-        let mut excluded = 0.0;
+        let mut excluded = known_s;
         for _ in 0..MAX_STEPS {
             let left = Attitude::from_rotation_vector(-drift_rad_s * excluded).then_in_body(turn);
             let next = self.boxes.iter().fold(excluded, |next, tried| {
@@ -74,6 +69,6 @@ impl SlewBound {
                 break;
             }
         }
-        rounded_down(excluded * (1.0 - DEFLATION))
+        rounded_down(excluded * (1.0 - DEFLATION)).max(known_s)
     }
 }

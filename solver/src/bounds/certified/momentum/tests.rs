@@ -62,10 +62,17 @@ fn no_motion_leaves_a_box_and_some_motions_nearly_fill_it() {
         let dynamics = scenario.dynamics();
         let bounds = CertifiedBounds::of(&dynamics);
         let drifting = bounds.momentum.iter().flat_map(|bounds| &bounds.frames);
-        let boxes: Vec<(BodyFrame, f64)> = drifting
+        let mut boxes: Vec<(BodyFrame, f64)> = drifting
             .map(|drifting| (drifting.frame, drifting.share))
             .chain(bounds.frames.iter().map(|frame| (*frame, 0.0)))
             .collect();
+        if let Some(bounds) = &bounds.momentum {
+            for key in bounds.facets.frames(&direction(&mut random)) {
+                let fitted = bounds.fitted(key);
+                let across = fitted.iter().flatten();
+                boxes.extend(across.map(|drifting| (drifting.frame, drifting.share)));
+            }
+        }
         assert!(!boxes.is_empty(), "case {case}");
         for _ in 0..3000 {
             let Some([rate, change, held]) = motion(&dynamics, &mut random) else {
@@ -92,6 +99,78 @@ fn no_motion_leaves_a_box_and_some_motions_nearly_fill_it() {
     assert!(samples > 50_000, "{samples}");
     let loose = fullest.iter().flatten().any(|share| *share < 0.98);
     assert!(!loose, "{fullest:?}");
+}
+
+/// The largest share of the limit that the rate along a direction, relative to a drift, reaches when it grows
+/// from rest, with torques that accelerate it most.
+fn growth_from_rest(dynamics: &Dynamics, share: f64, random: &mut SplitMix) -> f64 {
+    let along = direction(random);
+    let lever = dynamics.inertia_inverse.tr_mul(&along);
+    let mut torque = Vector3::zeros();
+    for wheel in &dynamics.actuators {
+        let faster = lever.dot(&wheel.axis) < 0.0;
+        torque += wheel.axis
+            * if faster {
+                wheel.max_torque
+            } else {
+                wheel.min_torque
+            };
+    }
+    let limit = dynamics.reachable_relative_rate(&along, share);
+    let slope = RateGrowth::of(dynamics).slope(
+        dynamics.reachable_acceleration(&along),
+        dynamics.gyroscopic_acceleration(&along, share),
+        limit,
+    );
+    let attitude = Attitude::from_rotation_vector(direction(random) * between(random, 0.0, 3.1));
+    let (mut held, mut rate) = (attitude.to_body(dynamics.momentum), Vector3::zeros());
+    let first = -along.dot(&held) * share;
+    let step = limit / slope / 400.0;
+    let change = |rate: &Vector3<f64>, held: &Vector3<f64>| {
+        let acceleration = dynamics.inertia_inverse * (-rate.cross(held) - torque);
+        [acceleration, -rate.cross(held)]
+    };
+    let largest = dynamics.reachable_rates().inf(&dynamics.max_rate);
+    let mut most = 0.0_f64;
+    for n in 1..=400_u32 {
+        // The midpoint rule.
+        let [a, h] = change(&rate, &held);
+        let [a, h] = change(&(rate + a * (0.5 * step)), &(held + h * (0.5 * step)));
+        (rate, held) = (rate + a * step, held + h * step);
+        let outside = rate.abs().component_div(&largest).max() > 1.0;
+        if outside || rate.norm() > dynamics.max_rate_norm {
+            break;
+        }
+        let grown = along.dot(&(rate - held * share)) - first;
+        most = most.max(grown / (slope * step * f64::from(n)));
+    }
+    most
+}
+
+#[test]
+fn no_rate_grows_faster_from_rest_than_its_chord_and_some_nearly_as_fast() {
+    let mut random = SplitMix::new(24);
+    let (mut fastest, mut gentler, mut count) = (0.0_f64, 0, 0);
+    for case in 0..400 {
+        let scenario = spacecraft(&mut random, true);
+        let dynamics = scenario.dynamics();
+        for share in [0.0, dynamics.mean_inverse_inertia()] {
+            let most = growth_from_rest(&dynamics, share, &mut random);
+            assert!(most <= 1.0 + 1e-5, "case {case}: {most}");
+            fastest = fastest.max(most);
+            let axis = direction(&mut random);
+            let [torques, held] = [
+                dynamics.reachable_acceleration(&axis),
+                dynamics.gyroscopic_acceleration(&axis, share),
+            ];
+            let slope = RateGrowth::of(&dynamics).slope(torques, held, 0.01);
+            assert!(slope >= torques, "case {case}");
+            gentler += i32::from(slope < 0.7 * (torques + held));
+            count += 1;
+        }
+    }
+    assert!(fastest > 0.9, "{fastest}");
+    assert!(gentler > count / 4, "{gentler} of {count}");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use super::super::limits::{EndRates, SlewLimits};
 use super::super::ramps::SlewBound;
+use super::super::rate_envelope::RateEnvelope;
 use super::{PAPER, rate_box, turn};
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
@@ -202,7 +203,7 @@ fn the_bound_with_zero_drift_equals_the_bound_without() {
         let turn = turn(vector);
         let plain = bound.lower_bound_s(&[turn], 1e-6);
         let still = Vector3::zeros();
-        let marched = bound.drifting_lower_bound_s(&turn, &still, EndRates::at_rest(), 1e-6);
+        let marched = bound.drifting_lower_bound_s(&turn, &still, &bound.envelope, 0.0, 1e-6);
         assert_close(marched, plain);
     }
 }
@@ -221,7 +222,8 @@ fn no_drifting_motion_beats_the_bound() {
         let drift = Vector3::from(generator.direction()) * generator.between(0.0, 0.5);
         // The turn of the drift in space precedes that of the relative motion.
         let target = Attitude::from_rotation_vector(drift * duration).then_in_body(&relative);
-        let least = any.drifting_lower_bound_s(&target, &drift, ends, 1e-4);
+        let envelope = RateEnvelope { limits, ends };
+        let least = any.drifting_lower_bound_s(&target, &drift, &envelope, 0.0, 1e-4);
         assert!(least <= duration, "{least} against {duration}, {ends:?}");
         // A plain box that contains the drift in all directions gives a weaker bound.
         let wider = SlewLimits {
@@ -245,8 +247,8 @@ fn a_turn_along_the_drift_takes_the_time_of_the_summed_rates() {
     for drift in [0.5, -0.5] {
         let expected = 1.0 / (1.0 + drift);
         let drift = Vector3::new(drift, 0.0, 0.0);
-        let ends = EndRates::at_rest();
-        let least = bound.drifting_lower_bound_s(&turn([1.0, 0.0, 0.0]), &drift, ends, 1e-6);
+        let turn = turn([1.0, 0.0, 0.0]);
+        let least = bound.drifting_lower_bound_s(&turn, &drift, &bound.envelope, 0.0, 1e-6);
         assert!(
             least <= expected && least > 0.98 * expected,
             "{least} instead of {expected}"

@@ -10,6 +10,7 @@ use slewplan_solver::tour::planner::{LegRow, Shard, StrongestBounds, leg_table, 
 use slewplan_tests::solving::{on_threads, plan_of, scenario_of};
 use slewplan_tests::suite::{LEGS_PER_SPACECRAFT, SPACECRAFT, leg};
 use slewplan_tests::{experiment_a_spec, experiment_b_spec, experiment_c_spec};
+use std::ops::Range;
 use std::time::Instant;
 
 /// Torques of the published wheels for unequal ramps, N m: ramp times in the ratios 2 : 1 : 5.
@@ -24,6 +25,9 @@ const GROUPS: [&str; 5] = [
     "suite, little momentum, rate limits",
 ];
 
+/// More spacecraft than the suite has, with momentum.
+const FURTHER: &str = "further spacecraft, momentum";
+
 /// Shares of the duration of a leg that are proved.
 struct Share {
     boxed: Option<f64>,
@@ -37,9 +41,13 @@ fn main() {
         published();
     }
     for (group, name) in GROUPS.into_iter().enumerate() {
+        let first = 4 * group as u64;
         if is_asked(name) {
-            suite(group as u64, name);
+            suite(first..first + 4, name);
         }
+    }
+    if is_asked(FURTHER) {
+        suite(SPACECRAFT..3 * SPACECRAFT, FURTHER);
     }
     for (name, spec) in [
         ("experiment A", experiment_a_spec()),
@@ -69,9 +77,8 @@ fn published() {
     report("published, unequal ramps", &self::pairs(&published));
 }
 
-/// The legs of a group of spacecraft of the random suite.
-fn suite(group: u64, name: &str) {
-    let crafts = (0..SPACECRAFT).filter(|craft| craft / 4 == group);
+/// The legs of some spacecraft of the random suite, or made like it.
+fn suite(crafts: Range<u64>, name: &str) {
     let legs = crafts.flat_map(|craft| (0..LEGS_PER_SPACECRAFT).map(move |n| leg(craft, n)));
     let shares: Vec<_> = legs
         .flat_map(|spec| shares(&spec, &rows(&spec, 2)))

@@ -84,7 +84,7 @@
 
 pub(crate) mod bisection;
 pub mod certificate;
-mod drift;
+pub(crate) mod drift;
 mod extremal;
 mod interior;
 mod levels;

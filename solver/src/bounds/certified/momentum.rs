@@ -24,15 +24,15 @@
 //! `k` is valid. The middle of the eigenvalues of `J^-1` makes the box narrow; zero, with the box of
 //! all rates, is better where rates have limits of their own.
 //!
-//! As without momentum a box fits best across the facet that limits the turn: that which is left to be
-//! made, relative to the drift, after the time that two fixed frames exclude. Whatever some box excludes is
-//! where all others go on.
+//! As without momentum a box fits best across the facet that limits the turn, so frames across facets are tried
+//! beside the body axes and those of the wheels, each with both values of `k`.
 
 mod growth;
 #[cfg(test)]
 mod tests;
 
 use super::{BodyFrame, MAX_PREPARED, MISSED_ATTITUDE, MISSED_RATE, exceeded};
+use crate::bounds::kinematic::drift::{DriftingSlew, drifting_lower_bound_s};
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use crate::bounds::kinematic::ramps::SlewBound;
 use crate::bounds::kinematic::rate_envelope::RateEnvelope;
@@ -41,11 +41,12 @@ use crate::model::dynamics::facets::{Facets, FrameKey};
 use crate::model::dynamics::{Dynamics, along};
 use growth::RateGrowth;
 use nalgebra::{Matrix3, Vector3};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Rounds over all boxes, most of which exclude nothing more after the first.
-const MAX_ROUNDS: usize = 4;
+/// Least times that are computed for a first bound, and for the last one.
+const FIRST_TRIED: usize = 3;
+const MAX_TRIED: usize = 32;
 
 /// Bounds on the slews of a spacecraft with momentum.
 #[derive(Debug)]
@@ -111,23 +112,27 @@ impl MomentumBounds {
         if self.frames.is_empty() {
             return None;
         }
-        let raised = |known, frame: &DriftingFrame| frame.raised(slew, known, tolerance);
-        let mut known = self.frames.iter().fold(0.0, raised);
+        let mut seen: Vec<_> = self.frames.iter().filter_map(|f| f.see(slew)).collect();
+        let known = drifting_lower_bound_s(&seen, 0.0, (FIRST_TRIED, tolerance));
+        let fitted: Vec<_> = self.keys(slew, known).map(|key| self.fitted(key)).collect();
+        let across = fitted.iter().flat_map(|frames| frames.iter().flatten());
+        seen.extend(across.filter_map(|frame| frame.see(slew)));
+        let most = (MAX_TRIED, tolerance);
+        Some(drifting_lower_bound_s(&seen, known, most))
+    }
+
+    /// Frames across the facets that a turn meets, and across those that what is left of it after a time, s,
+    /// does relative to the drift.
+    fn keys(&self, slew: &HeldSlew, time: f64) -> impl Iterator<Item = FrameKey> + use<> {
         let drift = slew.held[0] * self.shares[1];
-        let left = Attitude::from_rotation_vector(-drift * known).then_in_body(&slew.turn);
+        let left = Attitude::from_rotation_vector(-drift * time).then_in_body(&slew.turn);
         let identity = Attitude::identity();
-        let left = identity.signed_turn_to(&left.nearest_sign(&identity));
-        let keys = self.facets.frames(&left).into_iter();
-        let fitted: Vec<_> = keys.map(|key| self.fitted(key)).collect();
-        for _ in 0..MAX_ROUNDS {
-            let before = known;
-            let across = fitted.iter().flat_map(|frames| frames.iter().flatten());
-            known = across.chain(&self.frames).fold(known, raised);
-            if known - before <= tolerance * known {
-                break;
-            }
-        }
-        Some(known)
+        let keys = [slew.turn, left].map(|turn| {
+            let vector = identity.signed_turn_to(&turn.nearest_sign(&identity));
+            self.facets.frames(&vector)
+        });
+        let all: BTreeSet<FrameKey> = keys.concat().into_iter().collect();
+        all.into_iter()
     }
 
     fn fitted(&self, key: FrameKey) -> Arc<[Option<DriftingFrame>; 2]> {
@@ -186,8 +191,8 @@ impl DriftingFrame {
         })
     }
 
-    /// The larger of a bound on the duration of a slew, s, and that of this frame.
-    fn raised(&self, slew: &HeldSlew, known_s: f64, tolerance: f64) -> f64 {
+    /// A slew in these axes; `None` where its turn is no number.
+    fn see(&self, slew: &HeldSlew) -> Option<DriftingSlew<'_>> {
         let axes = &self.frame.axes;
         let drifts = slew.held.map(|held| axes.tr_mul(&held) * self.share);
         // Where the attitude is missed by an angle, so is the direction of the drift.
@@ -207,11 +212,12 @@ impl DriftingFrame {
                 end_rad_s: ends[1],
             },
         };
-        let Some(turn) = slew.turn.seen_from(axes) else {
-            return known_s;
-        };
-        self.bound
-            .drifting_lower_bound_s(&turn, &drifts[0], &envelope, known_s, tolerance)
+        Some(DriftingSlew {
+            bound: &self.bound,
+            turn: slew.turn.seen_from(axes)?,
+            drift: drifts[0],
+            envelope,
+        })
     }
 }
 

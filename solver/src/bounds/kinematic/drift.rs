@@ -19,56 +19,129 @@
 //! Where attitudes are missed by `E_0` and `E_1`, the drift in body axes is `E_0^T W_0` at the
 //! beginning, and the turn to be made is `E_0^T Q(T) E_1`: as much less counts as without a drift.
 
-use super::ramps::{DEFLATION, SlewBound, rounded_down};
+//!
+//! Of several boxes, in several axes and relative to several drifts, those are tried that promise most, as in
+//! [`super::strongest`]: what one excludes is where the others go on, and a box is left out in which a known motion
+//! makes the turn that is left in what it allows.
+
+use super::ramps::{DEFLATION, SlewBound, TriedBox, rounded_down};
 use super::rate_envelope::RateEnvelope;
+use super::strongest::{SMALL_GAIN, quick_times};
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
 
-/// Largest number of steps.
-const MAX_STEPS: usize = 60;
+/// Rounds over all boxes, most of which exclude nothing more after the first.
+const MAX_ROUNDS: usize = 4;
 /// Turns smaller than this, rad, are not distinguished from the identity because of rounding.
 const NO_TURN: f64 = 1e-8;
 
-impl SlewBound {
-    /// Lower bound, s, on the duration of a slew with a drift that makes a turn in body axes (as in
-    /// [`Self::lower_bound_s`]). The envelope is that of the rate relative to axes that turn at a
-    /// constant rate in space, `drift_rad_s`, given in body axes at the beginning; so are the rates at the
-    /// ends: a slew from rest starts with the negative drift. The boxes are those of [`Self::new`]; any
-    /// boxes are valid. Durations below `known_s` are excluded already, by whatever argument.
-    ///
-    /// The result is valid for any tolerance, and within the relative tolerance of the best bound
-    /// that this argument gives.
-    pub(crate) fn drifting_lower_bound_s(
-        &self,
-        turn: &Attitude,
-        drift_rad_s: &Vector3<f64>,
-        envelope: &RateEnvelope,
-        known_s: f64,
-        tolerance: f64,
-    ) -> f64 {
-        let at_end = turn.to_body(*drift_rad_s);
-        let mut excluded = known_s;
-        for _ in 0..MAX_STEPS {
-            let left = Attitude::from_rotation_vector(-drift_rad_s * excluded).then_in_body(turn);
-            let next = self.boxes.iter().fold(excluded, |next, tried| {
-                let rates = &tried.rates;
-                let least = self.least_time(tried, &left, tolerance);
-                if least * rates.min() < NO_TURN {
-                    return next;
+/// A slew as it is seen in the axes and relative to the drift of a bound.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct DriftingSlew<'a> {
+    /// Gives the boxes; any boxes are valid.
+    pub(crate) bound: &'a SlewBound,
+    /// The turn that it makes, in body axes.
+    pub(crate) turn: Attitude,
+    /// The drift at the beginning, rad/s, body axes.
+    pub(crate) drift: Vector3<f64>,
+    /// Limits of the rate relative to axes that turn with the drift. Its ends are relative to them too: a slew
+    /// from rest starts with the negative drift.
+    pub(crate) envelope: RateEnvelope,
+}
+
+/// Lower bound, s, on the duration of a slew that is seen in several ways, of which shorter durations than
+/// `known_s` are excluded already, by whatever argument. Where none are, the first view should have no drift.
+///
+/// The result is valid for any number of least times that are computed at most, and any tolerance of them.
+pub(crate) fn drifting_lower_bound_s(
+    seen: &[DriftingSlew<'_>],
+    known_s: f64,
+    (mut left, tolerance): (usize, f64),
+) -> f64 {
+    let candidates = most_promising_first(seen, known_s);
+    let mut excluded = known_s;
+    for _ in 0..MAX_ROUNDS {
+        let before = excluded;
+        for (slew, tried) in &candidates {
+            while left > 0 && slew.promises_more(tried, excluded) {
+                left -= 1;
+                let next = slew.raised(tried, excluded, tolerance);
+                let gained = next > excluded * (1.0 + SMALL_GAIN);
+                excluded = next;
+                if !gained {
+                    break;
                 }
-                let speed = |drift: &Vector3<f64>| drift.abs().component_div(rates).max();
-                let slope = speed(drift_rad_s).min(speed(&at_end));
-                f64::max(
-                    next,
-                    envelope.longest_short_of(rates, least, slope, excluded),
-                )
-            });
-            let done = next - excluded <= tolerance * next;
-            excluded = next;
-            if done {
-                break;
             }
         }
-        rounded_down(excluded * (1.0 - DEFLATION)).max(known_s)
+        if excluded <= before * (1.0 + SMALL_GAIN) {
+            break;
+        }
+    }
+    rounded_down(excluded * (1.0 - DEFLATION)).max(known_s)
+}
+
+/// All boxes with the views that have them, by the ratio of the time that the turn is expected to take to that which
+/// they allow in a duration that all share.
+fn most_promising_first<'a>(
+    seen: &'a [DriftingSlew<'a>],
+    known_s: f64,
+) -> Vec<(&'a DriftingSlew<'a>, &'a TriedBox)> {
+    let Some(first) = seen.first() else {
+        return Vec::new();
+    };
+    let limits = &first.bound.boxes[0];
+    let expected = first.expected_s(limits, 0.0);
+    let reference = if known_s > 0.0 {
+        known_s
+    } else {
+        first.envelope.duration_of(&limits.rates, expected)
+    };
+    let boxes = seen
+        .iter()
+        .flat_map(|slew| slew.bound.boxes.iter().map(move |tried| (slew, tried)));
+    let promise = |(slew, tried): &(&DriftingSlew<'_>, &TriedBox)| {
+        let allowed = slew.envelope.effective(&tried.rates, reference);
+        slew.expected_s(tried, reference) / allowed
+    };
+    let mut promised: Vec<_> = boxes.map(|one| (promise(&one), one)).collect();
+    promised.sort_by(|one, other| other.0.total_cmp(&one.0));
+    promised.into_iter().map(|(_, one)| one).collect()
+}
+
+impl DriftingSlew<'_> {
+    /// What is left of the turn for a duration, s, relative to the drift.
+    fn left_after(&self, duration: f64) -> Attitude {
+        Attitude::from_rotation_vector(-self.drift * duration).then_in_body(&self.turn)
+    }
+
+    /// The least time of that turn within a box, s, by a guess.
+    fn expected_s(&self, tried: &TriedBox, duration: f64) -> f64 {
+        let [attained, least] = quick_times(tried, &self.left_after(duration));
+        (0.5 * (attained + least) - self.bound.missed_time(tried)).max(0.0)
+    }
+
+    /// Whether a box may exclude more than a duration, s.
+    fn promises_more(&self, tried: &TriedBox, excluded: f64) -> bool {
+        let [attained, _] = quick_times(tried, &self.left_after(excluded));
+        let needed = self
+            .envelope
+            .effective(&tried.rates, excluded * (1.0 + SMALL_GAIN));
+        attained - self.bound.missed_time(tried) > needed
+    }
+
+    /// The duration that a box excludes with all shorter ones, s, once those below another one are.
+    fn raised(&self, tried: &TriedBox, excluded: f64, tolerance: f64) -> f64 {
+        let rates = &tried.rates;
+        let left = self.left_after(excluded);
+        let least = self.bound.least_time(tried, &left, tolerance);
+        if least * rates.min() < NO_TURN {
+            return excluded;
+        }
+        let speed = |drift: &Vector3<f64>| drift.abs().component_div(rates).max();
+        let slope = speed(&self.drift).min(speed(&self.turn.to_body(self.drift)));
+        let next = self
+            .envelope
+            .longest_short_of(rates, least, slope, excluded);
+        next.max(excluded)
     }
 }

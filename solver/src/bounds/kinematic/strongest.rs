@@ -14,7 +14,7 @@ use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
 
 /// Relative gain for which a box is not tried any more.
-const SMALL_GAIN: f64 = 2e-4;
+pub(super) const SMALL_GAIN: f64 = 2e-4;
 /// Boxes that are tried. All of them, some twenty, would give bounds of arrays on random axes that are
 /// greater by 1 to 2 % in the mean.
 const MAX_TRIED: usize = 6;
@@ -184,7 +184,7 @@ impl<'a> Alternatives<'a> {
 }
 
 /// Time of a motion within a box that makes a turn, and a lower bound on that of all such motions, s.
-fn quick_times(tried: &TriedBox, turn: &Attitude) -> [f64; 2] {
+pub(super) fn quick_times(tried: &TriedBox, turn: &Attitude) -> [f64; 2] {
     let speed = tried.rates.norm();
     let shape = (tried.rates / speed).into();
     let turn = turn.xyzw();

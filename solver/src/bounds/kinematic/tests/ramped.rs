@@ -1,5 +1,6 @@
 //! Bounds on slews with limited accelerations.
 
+use super::super::drift::{DriftingSlew, drifting_lower_bound_s};
 use super::super::limits::{EndRates, SlewLimits};
 use super::super::ramps::SlewBound;
 use super::super::rate_envelope::RateEnvelope;
@@ -202,8 +203,13 @@ fn the_bound_with_zero_drift_equals_the_bound_without() {
     for vector in [[0.2, -1.0, 0.7], [0.01, 0.02, 0.03], [2.0, 0.5, -1.0]] {
         let turn = turn(vector);
         let plain = bound.lower_bound_s(&[turn], 1e-6);
-        let still = Vector3::zeros();
-        let marched = bound.drifting_lower_bound_s(&turn, &still, &bound.envelope, 0.0, 1e-6);
+        let seen = DriftingSlew {
+            bound: &bound,
+            turn,
+            drift: Vector3::zeros(),
+            envelope: bound.envelope,
+        };
+        let marched = drifting_lower_bound_s(&[seen], 0.0, (99, 1e-6));
         assert_close(marched, plain);
     }
 }
@@ -222,8 +228,13 @@ fn no_drifting_motion_beats_the_bound() {
         let drift = Vector3::from(generator.direction()) * generator.between(0.0, 0.5);
         // The turn of the drift in space precedes that of the relative motion.
         let target = Attitude::from_rotation_vector(drift * duration).then_in_body(&relative);
-        let envelope = RateEnvelope { limits, ends };
-        let least = any.drifting_lower_bound_s(&target, &drift, &envelope, 0.0, 1e-4);
+        let seen = DriftingSlew {
+            bound: &any,
+            turn: target,
+            drift,
+            envelope: RateEnvelope { limits, ends },
+        };
+        let least = drifting_lower_bound_s(&[seen], 0.0, (99, 1e-4));
         assert!(least <= duration, "{least} against {duration}, {ends:?}");
         // A plain box that contains the drift in all directions gives a weaker bound.
         let wider = SlewLimits {
@@ -247,8 +258,13 @@ fn a_turn_along_the_drift_takes_the_time_of_the_summed_rates() {
     for drift in [0.5, -0.5] {
         let expected = 1.0 / (1.0 + drift);
         let drift = Vector3::new(drift, 0.0, 0.0);
-        let turn = turn([1.0, 0.0, 0.0]);
-        let least = bound.drifting_lower_bound_s(&turn, &drift, &bound.envelope, 0.0, 1e-6);
+        let seen = DriftingSlew {
+            bound: &bound,
+            turn: turn([1.0, 0.0, 0.0]),
+            drift,
+            envelope: bound.envelope,
+        };
+        let least = drifting_lower_bound_s(&[seen], 0.0, (99, 1e-6));
         assert!(
             least <= expected && least > 0.98 * expected,
             "{least} instead of {expected}"

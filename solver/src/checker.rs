@@ -8,6 +8,8 @@
 //! A flight may be of any origin. Everything wrong with it is reported as a sentence in
 //! [`Verification::failures`], never by a panic.
 
+mod claims;
+mod clock;
 mod cones;
 mod dynamics;
 mod extremum;
@@ -23,6 +25,7 @@ mod series;
 mod timeline;
 mod visits;
 
+pub use claims::ScheduleClaims;
 pub(crate) use leg::{LegEnd, leg_faults};
 pub use propagated::PropagatedMotion;
 pub(crate) use ramped::{StepPart, TorqueRamp, propagate_ramps};
@@ -41,7 +44,7 @@ use dynamics::{Body, Snapshot};
 use integrator::{Integration, STEP_TOLERANCE, TorqueSpan};
 use limits::{LimitObserver, excess, margin};
 use samples::Sampler;
-use visits::{Misses, Visit};
+use visits::Misses;
 
 /// Largest relative change of the conserved momentum; beyond it the integration itself has failed.
 pub const MOMENTUM_TOLERANCE: f64 = 1e-10;
@@ -67,12 +70,14 @@ pub struct CheckReport {
     /// the shares of them that the options allow the plan to use.
     pub margins: Margins,
     /// States in order of time, strictly increasing: at every control boundary, every arrival and
-    /// departure, and evenly in between so that no gap exceeds a 500th of the flight or a 20th of
+    /// departure, the ends of waits, and evenly in between so that no gap exceeds a 500th of the flight or a 20th of
     /// a leg. The sign of the quaternion is continuous from the start's.
     pub states: Vec<State>,
     /// Violations of cones that are only reported, with time and depth: one warning per cone. The
     /// margins have them one by one.
     pub keep_out: Vec<Problem>,
+    /// Sum of the values of the targets that are visited; `None` where no target has a value.
+    pub value: Option<f64>,
     /// Largest relative error of a prescribed final wheel speed; `None` when none is prescribed.
     pub end_wheel_speed_error: Option<f64>,
     /// Largest change of the total momentum in the reference frame relative to its parts: a measure of
@@ -85,15 +90,36 @@ pub struct CheckReport {
 /// Re-integrates a flight of any origin from the scenario's start and tests it.
 #[must_use]
 pub fn verify(scenario: &Scenario, flight: &Flight) -> CheckReport {
+    verify_with_claims(scenario, flight, &ScheduleClaims::default())
+}
+
+/// Does what [`verify`] does, and tests what a plan says of its schedule: a false claim is a failure too.
+#[must_use]
+pub fn verify_with_claims(
+    scenario: &Scenario,
+    flight: &Flight,
+    claims: &ScheduleClaims,
+) -> CheckReport {
+    CheckReport {
+        value: clock::value(scenario, flight),
+        ..examine(scenario, flight, claims)
+    }
+}
+
+fn examine(scenario: &Scenario, flight: &Flight, claims: &ScheduleClaims) -> CheckReport {
     let spacecraft = scenario.spacecraft();
+    let mut untimely = clock::untimely(scenario, flight);
+    untimely.extend(claims.false_ones(scenario, flight));
     let intervals = match timeline::intervals(flight, spacecraft.wheels()) {
         Ok(intervals) => intervals,
         Err(mut failures) => {
             failures.extend(visits::book(scenario, flight, &[]).1);
+            failures.extend(untimely);
             return CheckReport::not_propagated(scenario, failures);
         }
     };
     let (visits, mut failures) = visits::book(scenario, flight, &intervals);
+    failures.extend(untimely);
     let body = match Body::new(spacecraft.inertia(), spacecraft.wheels()) {
         Ok(body) => body,
         Err(sentence) => {
@@ -106,8 +132,13 @@ pub fn verify(scenario: &Scenario, flight: &Flight) -> CheckReport {
     failures.extend(visits::driven_rests(scenario, &visits, &intervals));
     let stays = cones::stays(&visits);
     let mut observed = FlightObserver::new(scenario, &stays);
-    match observed.integrate(&body, &intervals, &visits, flight.total_time_s) {
+    let waits = claims.wait_times(flight.total_time_s);
+    let waits = waits.map(|time| visits::snapped(time, flight, &intervals));
+    let times = samples::times(&intervals, &visits, waits, flight.total_time_s);
+    match observed.integrate(&body, &intervals, &times) {
         Ok(integration) => {
+            let flown = (&intervals[..], &observed.states[..]);
+            failures.extend(claims.false_waits(scenario, &visits, flown));
             let misses = visits::inspect(scenario, &visits, &observed.states);
             failures.extend(misses.failures.iter().cloned());
             observed.report(scenario, torque_usage, integration, &misses, failures)
@@ -145,11 +176,9 @@ impl<'a> FlightObserver<'a> {
         &mut self,
         body: &Body,
         intervals: &[TorqueSpan<'_>],
-        visits: &[Visit<'_>],
-        total_s: f64,
+        times: &[f64],
     ) -> Result<Integration, String> {
-        let times = samples::times(intervals, visits, total_s);
-        let mut sampler = Sampler::new(&times, &self.start);
+        let mut sampler = Sampler::new(times, &self.start);
         let (limits, cones) = (&mut self.limits, &mut self.cones);
         let integration = integrator::integrate(
             body,
@@ -206,6 +235,7 @@ impl<'a> FlightObserver<'a> {
             },
             states: self.states.iter().filter_map(state).collect(),
             keep_out: cones.warnings,
+            value: None,
             end_wheel_speed_error: misses.end_speed,
             momentum_drift: integration.momentum_drift,
             steps: integration.steps,
@@ -238,6 +268,7 @@ impl CheckReport {
             },
             states: Vec::new(),
             keep_out: Vec::new(),
+            value: None,
             end_wheel_speed_error: None,
             momentum_drift: NOT_COMPUTED,
             steps: 0,

@@ -50,6 +50,20 @@ export async function deskModules({ browser, service, must }) {
       ["1.50", "soon", "1 – 0.1", "a", "7", ""],
     ]);
   });
+  await must("windows are read in seconds and in dates, and come back as they were", async () => {
+    same(await inPage(async (folder) => {
+      const { shown, written } = await import(`${folder}/app/desk/cells.js`);
+      const cells = ["60..120 300.5 .. 360", "0/60; 90/1e2", "2026-01-01T00:01:00Z..2026-01-01T00:02:00.5Z, 300..400", "60-120", "1..2..3", "soon..later"];
+      const raw = cells.map((cell) => written("windows", cell));
+      return [raw, raw.map((text) => shown("windows", text)), shown("windows", '[{"from_s": 1}]')];
+    }), [
+      ['[{"from_s": 60, "to_s": 120}, {"from_s": 300.5, "to_s": 360}]', '[{"from_s": 0, "to_s": 60}, {"from_s": 90, "to_s": 100}]',
+        '[{"from": "2026-01-01T00:01:00Z", "to": "2026-01-01T00:02:00.5Z"}, {"from_s": 300, "to_s": 400}]',
+        '"60-120"', '"1..2..3"', '"soon..later"'],
+      ["60..120 300.5..360", "0..60 90..100", "2026-01-01T00:01:00Z..2026-01-01T00:02:00.5Z 300..400", "60-120", "1..2..3", "soon..later"],
+      '[{"from_s": 1}]',
+    ]);
+  });
   await must("tables of any separator are read, with quotes and lines in cells", async () => {
     same(await inPage(async (folder) => {
       const { parse } = await import(`${folder}/app/desk/csv.js`);
@@ -63,13 +77,14 @@ export async function deskModules({ browser, service, must }) {
     same(await inPage(async (folder) => {
       const { guess } = await import(`${folder}/app/desk/mapping.js`);
       return [["Name", "RA [deg]", "Dec (deg)", "Mag"], ["id", "roll", "pitch", "yaw", "dwell_s"], ["target", "q_x", "q_y", "q_z", "q_w"],
-        ["id", "ra", "dec", "roll_deg"], ["sirius", "101.2", "-16.7"]].map((head) => guess([head]));
+        ["id", "ra", "dec", "roll_deg"], ["sirius", "101.2", "-16.7"], ["id", "ra", "dec", "Window", "value"]].map((head) => guess([head]));
     }), [
       { head: true, keys: ["id", "ra", "dec", null], kind: "pointing" },
       { head: true, keys: ["id", "roll", "pitch", "yaw", "dwell"], kind: "roll_pitch_yaw" },
       { head: true, keys: ["id", "qx", "qy", "qz", "qw"], kind: "quaternion" },
       { head: true, keys: ["id", "ra", "dec", "roll"], kind: "ra_dec_roll" },
       { head: false, keys: ["id", "ra", "dec"], kind: "pointing" },
+      { head: true, keys: ["id", "ra", "dec", "windows", "value"], kind: "pointing" },
     ]);
   });
   await must("every form of an attitude becomes every other and looks the same", async () => {

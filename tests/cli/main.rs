@@ -1,6 +1,7 @@
 //! The command line from outside: exit codes, documents, messages.
 
 mod certify;
+mod clock;
 mod convert;
 mod export;
 mod files;

@@ -8,10 +8,12 @@ pub mod general;
 pub mod motions;
 pub mod orders;
 pub mod ordinary;
+pub mod orienteering;
 pub mod random;
 pub mod schedules;
 pub mod solving;
 pub mod suite;
+pub mod windows;
 
 use slewplan_solver::model::spec::{
     AttitudeSpec, BoresightChoice, PointingSpec, ScenarioSpec, SpacecraftSpec, StateSpec,

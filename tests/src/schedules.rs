@@ -5,7 +5,7 @@
 
 use crate::experiment_a_spec;
 use crate::random::Generator;
-use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, TargetSpec};
+use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, TargetSpec, WindowSpec};
 
 /// The region of the targets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,6 +57,38 @@ pub fn schedule(region: Region, rates: RateConditions, targets: usize, seed: u64
             }
         })
         .collect();
+    spec
+}
+
+/// Targets with windows and values in a pass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pass {
+    /// Rate conditions at the targets.
+    pub rates: RateConditions,
+    /// Number of targets.
+    pub targets: usize,
+    /// When the schedule ends at the latest, s.
+    pub duration_s: f64,
+    /// What the random numbers follow from.
+    pub seed: u64,
+}
+
+/// Targets on a strip, each with a window of 60 to 120 s somewhere in the pass and a value of 1 to 9.
+#[must_use]
+pub fn pass(pass: Pass) -> ScenarioSpec {
+    let mut spec = schedule(Region::Strip, pass.rates, pass.targets, pass.seed);
+    let mut generator = Generator::new(pass.seed + 1000);
+    spec.latest_end_s = Some(pass.duration_s);
+    for target in &mut spec.targets {
+        let length = generator.between(60.0, 120.0);
+        let from = generator.between(0.0, pass.duration_s - length);
+        target.windows = Some(vec![WindowSpec {
+            from_s: Some(from),
+            to_s: Some(from + length),
+            ..WindowSpec::default()
+        }]);
+        target.value = Some(1.0 + generator.below(9) as f64);
+    }
     spec
 }
 

@@ -49,6 +49,11 @@ const SOLVER: &[Row] = &[
     ),
     // The search knows slews through its trait only.
     ("tour/order", &["math::random", "model::order_rules", "run"]),
+    // Knows times alone.
+    (
+        "tour/schedule",
+        &["math::random", "model::order_rules", "tour::order::Place"],
+    ),
 ];
 
 /// The server, from the ground up.

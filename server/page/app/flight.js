@@ -3,6 +3,7 @@
 import { alarmsOf, clearanceCurves, excludedBy } from "./plan/keep-out.js";
 import { excessAlarms } from "./plan/violations.js";
 import { quaternion, slerp } from "./rotation.js";
+import { windowsByTarget, windowsUsed } from "./windows.js";
 
 /** The flight of a plan; null when the plan has no trajectory. */
 export function flightOf(plan, scenario) {
@@ -13,13 +14,15 @@ export function flightOf(plan, scenario) {
   const inForce = torques(moved.times, controls, wheels.length);
   const commanded = { times: moved.times, curves: wheels.map((_, wheel) => inForce.map((torque) => torque[wheel])), steps: true };
   const isPassed = plan.verification?.passed !== false;
+  const stopped = stops(plan, scenario);
   return {
     ...moved,
     total: plan.total_time_s,
     torques: commanded,
     torquesAt: (time) => inForce[indexAt(moved.times, time)],
     phases: phases(plan, scenario),
-    stops: stops(plan, scenario),
+    stops: stopped,
+    windows: windowsUsed(stopped, windowsByTarget(scenario)),
     alarms: [...alarmsOf(plan), ...isPassed ? [] : excessAlarms({ ...moved, torques: commanded })],
   };
 }
@@ -42,6 +45,7 @@ export function motion(states, asked, plan) {
     limits: limits(asked),
     phases: [],
     stops: [],
+    windows: [],
     alarms: [],
     excluded,
     clearances: clearanceCurves(excluded, asked, attitudes),
@@ -80,8 +84,14 @@ function limits(scenario) {
   };
 }
 
-/** Slew, settle and dwell, one after another. */
+/** Slew, settle and dwell, and what is waited between, in order of time. */
 function phases(plan, scenario) {
+  const waits = (plan.waits ?? []).map(({ target, from_s: begin, to_s: end }) =>
+    ({ kind: "wait", name: `wait at ${target}`, label: target, begin, end }));
+  return [...moved(plan, scenario), ...waits].sort((a, b) => a.begin - b.begin);
+}
+
+function moved(plan, scenario) {
   const settle = new Map(scenario.targets.map((target) => [target.id, target.settle_s ?? 0]));
   const arrivals = new Map(plan.passages.map((passage, index) => [passage.target, { passage, number: index + 1 }]));
   return plan.legs.flatMap((leg) => {
@@ -91,9 +101,9 @@ function phases(plan, scenario) {
     if (!at) return [slew];
     const { passage, number } = at;
     slew.number = number;
-    const settled = Math.min(arrival + (settle.get(leg.to) ?? 0), passage.departure_s);
+    const settled = Math.min(passage.time_s + (settle.get(leg.to) ?? 0), passage.departure_s);
     const rest = [
-      { kind: "settle", begin: arrival, end: settled },
+      { kind: "settle", begin: passage.time_s, end: settled },
       { kind: "dwell", begin: settled, end: passage.departure_s },
     ];
     const names = { settle: `settle at ${leg.to}`, dwell: `dwell at ${leg.to}` };

@@ -17,15 +17,20 @@ const SPEEDS = {
 export const rateUnit = () => RATES[settings.get("rate")];
 export const speedUnit = () => SPEEDS[settings.get("speed")];
 
+/** A date of a scenario as milliseconds; not a number for any other text. */
+const parsed = (date) => Date.parse(`${String(date).replace(/Z$/, "")}Z`);
+
 /** The clock of a scenario: its time system and the day and time of moments; null without an epoch. */
 export function clockOf({ epoch, time_system: system }) {
   if (!epoch) return null;
-  const begin = Date.parse(`${epoch.replace(/Z$/, "")}Z`);
+  const begin = parsed(epoch);
   if (Number.isNaN(begin)) return null;
   // A leap second would not be seen; none has been announced.
   const text = (time) => new Date(begin + Math.round(1000 * time)).toISOString();
   return {
     name: system ?? "UTC",
+    /** Seconds from the start to a date. */
+    seconds: (date) => (parsed(date) - begin) / 1000,
     /** Seconds after a full day at which the flight begins. */
     offset: (begin % 86_400_000) / 1000,
     day: (time) => text(time).slice(0, 10),

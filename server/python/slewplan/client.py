@@ -44,6 +44,9 @@ class Job(TypedDict):
     targets: int
     incumbent_s: NotRequired[float | None]
     lower_bound_s: NotRequired[float | None]
+    # Where targets have values.
+    value: NotRequired[float | None]
+    value_bound: NotRequired[float | None]
     keep_out_violated: NotRequired[bool | None]
     detail: NotRequired[str | None]
     code: NotRequired[str | None]
@@ -154,11 +157,38 @@ class Problem(TypedDict):
     hint: str
 
 
+class InclusionCost(TypedDict):
+    """The best known plan with a target that is left out, compared with the plan."""
+
+    value_change: float
+    time_change_s: float
+
+
+class SkippedTarget(TypedDict):
+    target: str
+    reason: Literal["window_unreachable", "value_too_small", "time_is_up", "not_tried"]
+    inclusion: NotRequired[InclusionCost]
+
+
+class Wait(TypedDict):
+    """A stay at rest outside a visit, in the attitude of a target or of `start`."""
+
+    target: str
+    from_s: float
+    to_s: float
+
+
 class Plan(TypedDict):
     status: Literal["optimal", "feasible", "infeasible", "failed"]
     total_time_s: float | None
     lower_bound_s: float | None
     relative_gap: float | None
+    # Of scenarios with windows, values or a latest end.
+    objective: NotRequired[Literal["value_then_time"]]
+    value: NotRequired[float]
+    value_bound: NotRequired[float]
+    skipped: NotRequired[list[SkippedTarget]]
+    waits: NotRequired[list[Wait]]
     sequence: list[str]
     legs: list[Leg]
     passages: list[Passage]

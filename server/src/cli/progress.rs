@@ -138,7 +138,7 @@ fn steps(progress: &Progress) -> String {
     }
 }
 
-/// Best plan, bound and gap, as far as they are known.
+/// Values, best plan, bound and gap, as far as they are known.
 fn standing(progress: &Progress) -> String {
     let seconds = |label, value: Option<f64>| {
         value.map_or_else(String::new, |value| format!("  {label} {value:.3} s"))
@@ -146,14 +146,18 @@ fn standing(progress: &Progress) -> String {
     let gap = progress
         .relative_gap()
         .map_or_else(String::new, |gap| format!("  gap {:.3} %", gap * 100.0));
+    let value = match (progress.value, progress.value_bound) {
+        (Some(value), Some(bound)) if bound > 0.0 => format!("  value {value} of at most {bound}"),
+        _ => String::new(),
+    };
     let incumbent = seconds("best plan", progress.incumbent_s);
     format!(
-        "{incumbent}{}{gap}",
+        "{value}{incumbent}{}{gap}",
         seconds("lower bound", progress.lower_bound_s)
     )
 }
 
-/// JSON lines: every change of stage, incumbent or bound, else at most ten lines per second.
+/// JSON lines: every change of stage, incumbent, value or bound, else at most ten lines per second.
 struct JsonLines {
     clock: Clock,
     last: Mutex<Option<(Instant, Progress)>>,
@@ -167,6 +171,10 @@ struct ProgressLine {
     incumbent_s: Option<f64>,
     lower_bound_s: Option<f64>,
     relative_gap: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    value: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    value_bound: Option<f64>,
     elapsed_s: f64,
     /// What is left of the time limit; `null` without one.
     time_left_s: Option<f64>,
@@ -190,6 +198,8 @@ impl JsonLines {
             incumbent_s: progress.incumbent_s.filter(|value| value.is_finite()),
             lower_bound_s: progress.lower_bound_s.filter(|value| value.is_finite()),
             relative_gap: progress.relative_gap().filter(|value| value.is_finite()),
+            value: progress.value.filter(|value| value.is_finite()),
+            value_bound: progress.value_bound.filter(|value| value.is_finite()),
             elapsed_s: self.clock.elapsed_s(now),
             time_left_s: self.clock.left_s(now),
         }
@@ -216,8 +226,9 @@ impl Observer for JsonLines {
 }
 
 fn news(shown: &Progress, progress: &Progress) -> bool {
-    let key = |p: &Progress| -> (Stage, Option<f64>, Option<f64>) {
-        (p.stage, p.incumbent_s, p.lower_bound_s)
+    let key = |p: &Progress| {
+        let values = (p.value, p.value_bound);
+        (p.stage, p.incumbent_s, p.lower_bound_s, values)
     };
     key(shown) != key(progress)
 }
@@ -233,6 +244,8 @@ mod tests {
             total,
             incumbent_s: Some(50.0),
             lower_bound_s: Some(40.0),
+            value: None,
+            value_bound: None,
         }
     }
 
@@ -246,6 +259,12 @@ mod tests {
             standing,
             "  best plan 50.000 s  lower bound 40.000 s  gap 20.000 %"
         );
+        let valued = Progress {
+            value: Some(3.0),
+            value_bound: Some(4.5),
+            ..at(Stage::Search, 7, None)
+        };
+        assert!(super::standing(&valued).starts_with("  value 3 of at most 4.5  best plan"));
     }
 
     #[test]

@@ -74,6 +74,14 @@ struct Standing {
     lower_bound_s: Option<Number>,
     /// `(incumbent - bound) / incumbent`.
     relative_gap: Option<Number>,
+    /// Sum of the values of the targets that the best plan so far visits, where targets have values.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    value: Option<Number>,
+    /// No plan has a greater sum.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    value_bound: Option<Number>,
 }
 
 impl Standing {
@@ -89,6 +97,8 @@ impl Standing {
             incumbent_s: job.incumbent_s.map(Number),
             lower_bound_s: job.lower_bound_s.map(Number),
             relative_gap: gap.map(Number),
+            value: job.value.map(Number),
+            value_bound: job.value_bound.map(Number),
         }
     }
 }

@@ -9,6 +9,7 @@ use utoipa::ToSchema;
 
 mod interruption;
 mod parts;
+mod schedule;
 mod statistics;
 
 pub(crate) use interruption::Interruption;
@@ -17,6 +18,7 @@ pub(crate) use parts::{
     StateDocument, VerificationDocument,
 };
 use parts::{EndDocument, LegDocument, PassageDocument};
+use schedule::{SkippedDocument, WaitDocument};
 use statistics::StatisticsDocument;
 
 /// The answer of `solve`. All times are `null` and all lists empty when there is no plan.
@@ -28,6 +30,27 @@ pub(crate) struct PlanDocument<'a> {
     lower_bound_s: Option<Number>,
     relative_gap: Option<Number>,
     lower_bound_kind: Option<&'static str>,
+    /// What was optimised, where the scenario has windows, values or a latest end: `value_then_time` is
+    /// the greatest sum of values, and of the plans that have it the least total time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    objective: Option<&'static str>,
+    /// Sum of the values of the targets that are visited, where there is an `objective`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    value: Option<Number>,
+    /// No plan has a greater sum, in the sense of the kind of the lower bound.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    value_bound: Option<Number>,
+    /// The targets that are left out, where there is an `objective`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    skipped: Option<Vec<SkippedDocument<'a>>>,
+    /// Every stay at rest outside a visit, in order of time, where there is an `objective`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    waits: Option<Vec<WaitDocument<'a>>>,
     /// No plan takes less, s, in any order that the targets' demands admit, proved: the shortest sum of the
     /// `certified_lower_bound_s` of legs through all targets, with settle and dwell. `null` where no
     /// leg has such a bound.
@@ -118,12 +141,18 @@ fn without_plan<'a>(status: &'static str, reasons: &'a [Problem]) -> PlanDocumen
 
 fn planned(plan: &Plan) -> PlanDocument<'_> {
     let flight = &plan.flight;
+    let schedule = plan.schedule.as_ref();
     PlanDocument {
         status: status(plan.optimality),
         total_time_s: Some(Number(plan.total_time_s)),
         lower_bound_s: Some(Number(plan.lower_bound_s)),
         relative_gap: Some(Number(plan.relative_gap)),
         lower_bound_kind: Some(plan.lower_bound_kind.into()),
+        objective: schedule.map(|it| it.objective.into()),
+        value: schedule.map(|it| Number(it.value)),
+        value_bound: schedule.map(|it| Number(it.value_bound)),
+        skipped: schedule.map(|it| it.skipped.iter().map(SkippedDocument::from).collect()),
+        waits: schedule.map(|it| it.waits.iter().map(WaitDocument::from).collect()),
         certified_lower_bound_s: plan.certified_lower_bound_s.map(Number),
         largest_open_share: plan.largest_open_share().map(Number),
         sequence: flight
@@ -269,6 +298,29 @@ mod tests {
         let value = serde_json::to_value(document(&outcome, &[], &doubts)).unwrap();
         assert_eq!(value["warnings"][0]["pointer"], "/start");
         assert_eq!(value["warnings"][1]["pointer"], "/keep_out/0");
+    }
+
+    #[test]
+    fn what_the_clock_adds_is_written_where_it_matters() {
+        let mut plan = sample::plan();
+        let written = |plan: &Plan| serde_json::to_value(super::plan(plan, &[])).unwrap();
+        for name in ["objective", "value", "value_bound", "skipped", "waits"] {
+            assert!(written(&plan).get(name).is_none(), "{name}");
+        }
+        plan.schedule = Some(sample::schedule());
+        let value = written(&plan);
+        assert_eq!(value["objective"], "value_then_time");
+        assert_eq!(
+            (&value["value"], &value["value_bound"]),
+            (&3.0.into(), &4.5.into())
+        );
+        let skipped = serde_json::json!([
+            {"target": "c", "reason": "value_too_small", "inclusion": {"value_change": -1.5, "time_change_s": 2.0}},
+            {"target": "d", "reason": "not_tried"}
+        ]);
+        assert_eq!(value["skipped"], skipped);
+        let waits = serde_json::json!([{"target": "a", "from_s": 10.0, "to_s": 12.0}]);
+        assert_eq!(value["waits"], waits);
     }
 
     #[test]

@@ -5,6 +5,7 @@
 mod cell;
 mod columns;
 mod row;
+mod windows;
 
 pub(crate) use columns::AttitudeColumns;
 
@@ -166,7 +167,10 @@ impl TargetTable {
         if let Err(faults) = Scenario::examine(&spec) {
             problems.extend(faults.problems);
         }
-        problems.retain(|problem| problem.pointer.starts_with("/targets"));
+        // Dates need the epoch of a scenario, which is for that to give.
+        problems.retain(|problem| {
+            problem.pointer.starts_with("/targets") && problem.code != Code::EpochRequired
+        });
         problems
             .into_iter()
             .map(|problem| self.located(problem))
@@ -196,6 +200,8 @@ fn column_of(place: &[&str]) -> Option<Column> {
         ["id"] => Some(Column::Id),
         ["dwell_s"] => Some(Column::Dwell),
         ["settle_s"] => Some(Column::Settle),
+        ["windows", ..] => Some(Column::Windows),
+        ["value"] => Some(Column::Value),
         ["attitude", "ra_dec_roll_deg", index] => of(
             &[Column::RightAscension, Column::Declination, Column::Roll],
             index,

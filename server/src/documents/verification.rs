@@ -1,13 +1,14 @@
 //! A plan to be verified, a request to do so, and its answer.
 
 mod own_bounds;
+mod own_schedule;
 
 use super::document::{self, Node};
 use super::flight::{self, ForeignPlan};
 use super::plan::{MarginsDocument, VerificationDocument};
 use super::problems::{ProblemDocument, documents};
 use serde::Serialize;
-use slewplan_solver::checker::{self, CheckReport};
+use slewplan_solver::checker::{self, CheckReport, ScheduleClaims};
 use slewplan_solver::model::input::{Unread, input_object, required_or};
 use slewplan_solver::model::plan::{Flight, Margins, Verification};
 use slewplan_solver::model::problem::Problem;
@@ -29,6 +30,7 @@ input_object! {
 #[derive(Debug)]
 pub(crate) struct ClaimedPlan {
     flight: Flight,
+    schedule: ScheduleClaims,
     false_claims: Vec<Problem>,
 }
 
@@ -54,13 +56,14 @@ impl ClaimedPlan {
         let flight = flight::read_node(node, scenario)?;
         Ok(Self {
             false_claims: own_bounds::above_times(node, flight.total_time_s),
+            schedule: own_schedule::claims(node),
             flight,
         })
     }
 
     /// Verifies the flight. A false claim is a failure too.
     pub(crate) fn verify(&self, scenario: &Scenario) -> CheckReport {
-        let mut found = checker::verify(scenario, &self.flight);
+        let mut found = checker::verify_with_claims(scenario, &self.flight, &self.schedule);
         let verification = &mut found.verification;
         let claims = self.false_claims.iter().map(|claim| claim.message.clone());
         verification.failures.extend(claims);
@@ -96,5 +99,14 @@ impl<'a> ReportDocument<'a> {
             margins: margins.into(),
             warnings: documents(warnings),
         }
+    }
+}
+
+/// A member that is a number.
+fn number(object: &Node, name: &str) -> Option<f64> {
+    match object.member(name)? {
+        Node::Integer(value) => Some(*value as f64),
+        Node::Number(value) => Some(*value),
+        _ => None,
     }
 }

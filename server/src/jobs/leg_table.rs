@@ -42,7 +42,7 @@ pub(super) fn solve(query: &[u8], context: &JobContext<'_>, parts: &TableStore<'
 fn attempt(query: &[u8], context: &JobContext<'_>, parts: &TableStore<'_>) -> Ended {
     let query = match read(query) {
         Ok(query) => query,
-        Err(ended) => return ended,
+        Err(ended) => return *ended,
     };
     let run = Run {
         pool: context.pool,
@@ -89,15 +89,17 @@ fn attempt(query: &[u8], context: &JobContext<'_>, parts: &TableStore<'_>) -> En
 }
 
 /// A stored query. It was valid when it was accepted, perhaps by another version of the program.
-pub(super) fn read(query: &[u8]) -> Result<LegQuery, Ended> {
+pub(super) fn read(query: &[u8]) -> Result<LegQuery, Box<Ended>> {
     let node = document::parse(query);
-    let node = node.map_err(|problem| solve::refused(JobState::Failed, &[problem]))?;
-    leg_query::read(&node).map_err(|refusal| match refusal {
-        Refusal::Invalid(problems) => solve::refused(JobState::Failed, &problems),
-        Refusal::TooMany(count) => {
-            let detail = format!("{count} legs are more than this version takes");
-            solve::without_plan(JobState::Failed, None, &detail)
-        }
+    let node = node.map_err(|problem| Box::new(solve::refused(JobState::Failed, &[problem])))?;
+    leg_query::read(&node).map_err(|refusal| {
+        Box::new(match refusal {
+            Refusal::Invalid(problems) => solve::refused(JobState::Failed, &problems),
+            Refusal::TooMany(count) => {
+                let detail = format!("{count} legs are more than this version takes");
+                solve::without_plan(JobState::Failed, None, &detail)
+            }
+        })
     })
 }
 
@@ -107,6 +109,8 @@ fn ended(state: JobState) -> Ended {
         document: None,
         incumbent_s: None,
         lower_bound_s: None,
+        value: None,
+        value_bound: None,
         keep_out_violated: None,
         detail: None,
         code: None,

@@ -66,6 +66,7 @@ impl Observer for ReportingObserver<'_> {
             document,
             total_time_s: plan.total_time_s,
             lower_bound_s: plan.lower_bound_s,
+            value: plan.schedule.as_ref().map(|schedule| schedule.value),
             keep_out_violated: plan.margins.violates_cones(),
         });
         // The next progress wakes the recorder, which records both together.
@@ -179,12 +180,14 @@ async fn record_reports(
 
 fn row(progress: &Progress) -> ProgressRow {
     let count = |value| i64::try_from(value).unwrap_or(i64::MAX);
-    let seconds = |value: Option<f64>| value.filter(|value| value.is_finite());
+    let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
     ProgressRow {
         stage: progress.stage.into(),
         done: count(progress.done),
         total: progress.total.map(count),
-        incumbent_s: seconds(progress.incumbent_s),
-        lower_bound_s: seconds(progress.lower_bound_s),
+        incumbent_s: finite(progress.incumbent_s),
+        lower_bound_s: finite(progress.lower_bound_s),
+        value: finite(progress.value),
+        value_bound: finite(progress.value_bound),
     }
 }

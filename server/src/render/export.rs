@@ -16,6 +16,7 @@ mod calendar;
 mod csv;
 mod form;
 mod open_mct;
+mod phases;
 mod sampling;
 mod stk;
 #[cfg(test)]
@@ -183,9 +184,9 @@ pub(crate) fn write(
         spacing,
         most: options.most_samples,
     };
-    let sampled = || SampledFlight::of(flight, &motion()?, sampling);
+    let sampled = || SampledFlight::of(scenario, flight, &motion()?, sampling);
     match format {
-        Format::Csv => Ok(csv::table(&sampled()?)),
+        Format::Csv => Ok(csv::table(&sampled()?, scenario.has_clock())),
         Format::AemKvn => Ok(aem::message(scenario, &sampled()?, options)?.kvn()),
         Format::AemXml => Ok(aem::message(scenario, &sampled()?, options)?.xml()),
         Format::Basilisk => Ok(basilisk::waypoints(&sampled()?)),

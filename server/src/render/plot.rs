@@ -15,6 +15,7 @@ mod flight;
 mod legs;
 mod panel;
 mod scale;
+mod schedule;
 mod slews;
 mod sphere;
 #[cfg(test)]
@@ -68,7 +69,10 @@ pub(crate) fn plan(
     for panel in &mut panels {
         panel.alarms = plan.intrusions();
     }
-    let height = lower + STRIP + timeline::height(&panels) + 24.0;
+    let dated = scenario.is_some_and(|it| it.epoch().is_some());
+    let clock = if dated { schedule::CLOCK_ROW } else { 0.0 };
+    let upper = lower + STRIP + clock + timeline::height(&panels) + 24.0;
+    let height = upper + schedule::height(plan);
     let name = scenario.and_then(Scenario::name).unwrap_or("Plan");
     let mut canvas = Canvas::new(WIDTH, height, &described(name, plan));
     head(&mut canvas, name, &summary(plan));
@@ -91,14 +95,16 @@ pub(crate) fn plan(
         left: MARGIN + 60.0,
         top: lower,
         width: WIDTH - 2.0 * MARGIN - 60.0,
-        height: height - lower,
+        height: STRIP,
     };
-    timeline::strip(&mut canvas, times, plan, STRIP);
-    let below = PlotArea {
-        top: lower + STRIP + BELOW_STRIP,
-        ..times
-    };
+    timeline::strip(&mut canvas, times, plan, scenario);
+    let at = |top: f64| PlotArea { top, ..times };
+    if let Some(scenario) = scenario {
+        schedule::clock(&mut canvas, at(lower + STRIP), plan.total_time_s, scenario);
+    }
+    let below = at(lower + STRIP + clock + BELOW_STRIP);
     timeline::stack(&mut canvas, below, &panels, &record);
+    schedule::left_out(&mut canvas, at(upper), plan);
     Ok(canvas.finish())
 }
 
@@ -109,12 +115,13 @@ fn head(canvas: &mut Canvas, name: &str, summary: &str) {
 
 /// The title of the picture: the plan in a line.
 fn summary(plan: &WrittenPlan) -> String {
-    let mut parts = vec![
+    let mut parts: Vec<String> = plan.value_words().into_iter().collect();
+    parts.extend([
         format!("{:.2} s", plan.total_time_s),
         plan.status.clone(),
         format!("lower bound {:.2} s", plan.lower_bound_s),
         format!("gap {:.2} %", 100.0 * plan.relative_gap),
-    ];
+    ]);
     if let Some(verification) = &plan.verification {
         let passed = if verification.passed { "" } else { "not " };
         parts.push(format!("{passed}verified"));

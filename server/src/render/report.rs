@@ -13,6 +13,7 @@ mod numbers;
 mod published;
 #[cfg(test)]
 pub(crate) mod sample;
+mod schedule;
 mod slews;
 mod studies;
 mod summary;

@@ -155,8 +155,10 @@ pub(super) async fn claim(
          started_us = CASE WHEN NOT begins THEN started_us WHEN submitted_us > $3 THEN submitted_us \
          ELSE CAST($3 AS bigint) END, \
          stage = NULL, done = NULL, total = NULL, \
-         lower_bound_s = CASE bound_version WHEN $4 THEN lower_bound_s END, bound_version = $4, \
-         incumbent_s = (SELECT total_time_s FROM incumbents WHERE job = jobs.sequence) \
+         lower_bound_s = CASE bound_version WHEN $4 THEN lower_bound_s END, \
+         value_bound = CASE bound_version WHEN $4 THEN value_bound END, bound_version = $4, \
+         incumbent_s = (SELECT total_time_s FROM incumbents WHERE job = jobs.sequence), \
+         value = (SELECT i.value FROM incumbents i WHERE i.job = jobs.sequence) \
          FROM {rows $5 candidate bigint, begins boolean} AS chosen WHERE sequence = candidate \
          RETURNING scenario, memory_bytes, ",
         job_columns!()

@@ -14,6 +14,10 @@ pub(crate) struct Ended {
     pub(crate) incumbent_s: Option<f64>,
     /// Lower bound on the duration, s.
     pub(crate) lower_bound_s: Option<f64>,
+    /// Sum of the values that the plan visits, where targets have values.
+    pub(crate) value: Option<f64>,
+    /// Upper bound on that sum.
+    pub(crate) value_bound: Option<f64>,
     /// Whether the plan violates a cone; `None` without a plan, or where it was stored before this
     /// was noted.
     pub(crate) keep_out_violated: Option<bool>,

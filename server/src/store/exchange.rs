@@ -187,7 +187,10 @@ async fn update_ended(
         "UPDATE jobs SET state = CASE WHEN cancel_requested_us IS NULL THEN end_state \
          ELSE 'cancelled' END, \
          code = CASE WHEN cancel_requested_us IS NULL THEN end_code END, detail = why, \
-         incumbent_s = coalesce(plan_s, incumbent_s), lower_bound_s = ",
+         incumbent_s = coalesce(plan_s, incumbent_s), \
+         value = CASE WHEN plan_s IS NULL THEN value ELSE told_value END, value_bound = ",
+        least_value_bound!(),
+        ", lower_bound_s = ",
         bound_beside!("coalesce(plan_s, incumbent_s)"),
         ", keep_out_violated = violates, finished_us = end_us, \
          attempt = CASE WHEN begun_us IS NULL OR state = 'running' THEN attempt ELSE attempt + 1 END, \
@@ -197,7 +200,8 @@ async fn update_ended(
          boot_id = NULL, lease_until_us = NULL, claimed_until_us = NULL \
          FROM {rows $1 leased bigint, held bigint, end_state text, end_code text, why text, \
          plan_s double precision, told_bound_s double precision, violates boolean, end_us bigint, \
-         begun_us bigint, told_stage text, told_done bigint, told_total bigint} AS told WHERE ",
+         begun_us bigint, told_stage text, told_done bigint, told_total bigint, \
+         told_value double precision, told_value_bound double precision} AS told WHERE ",
         is_held!(),
         " RETURNING ",
         job_columns!()
@@ -208,7 +212,7 @@ async fn update_ended(
 }
 
 impl JobEnd {
-    fn row(&self) -> [Value<'_>; 13] {
+    fn row(&self) -> [Value<'_>; 15] {
         let ended = &self.ended;
         let [leased, fence] = held(&self.lease);
         let progress = self.progress.as_ref();
@@ -226,6 +230,8 @@ impl JobEnd {
             progress.map(|progress| progress.stage).into(),
             progress.map(|progress| progress.done).into(),
             progress.and_then(|progress| progress.total).into(),
+            ended.value.into(),
+            ended.value_bound.into(),
         ]
     }
 }

@@ -27,7 +27,7 @@ macro_rules! greater_bound {
 /// The lower bound of a job after a report: the greater one, but no more than the duration of the
 /// plan.
 macro_rules! bound_beside {
-    ($incumbent:literal) => {
+    ($incumbent:expr) => {
         concat!(
             "CASE WHEN ",
             greater_bound!(),
@@ -39,5 +39,29 @@ macro_rules! bound_beside {
             greater_bound!(),
             " END"
         )
+    };
+}
+
+/// What is said of the better plan: that of a report (`plan_s` its duration, `told_value` its value) if it
+/// is worth more than that of the job, or as much and is shorter, else that of the job. Values are null
+/// where no target has one.
+macro_rules! better_of {
+    ($reported:literal, $kept:literal) => {
+        concat!(
+            "(CASE WHEN incumbent_s IS NULL OR told_value > value \
+             OR ((told_value = value OR value IS NULL) AND plan_s < incumbent_s) THEN ",
+            $reported,
+            " ELSE ",
+            $kept,
+            " END)"
+        )
+    };
+}
+
+/// The less of the upper bound on the value of a job and of that of a report; either may be null.
+macro_rules! least_value_bound {
+    () => {
+        "CASE WHEN value_bound <= told_value_bound THEN value_bound \
+         ELSE coalesce(told_value_bound, value_bound) END"
     };
 }

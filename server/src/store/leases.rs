@@ -68,7 +68,7 @@ impl Store {
     /// Records progress with its event, and a better plan if there is one; `false` when the lease
     /// has been lost.
     ///
-    /// Results of earlier attempts are kept: incumbents never rise and bounds never fall.
+    /// Results of earlier attempts are kept: incumbents never get worse and bounds never weaker.
     pub(crate) async fn progress(
         &self,
         lease: &JobRow,
@@ -79,14 +79,17 @@ impl Store {
         let mut transaction = self.begin().await?;
         let update = sql(concat!(
             "UPDATE jobs SET stage = told_stage, done = told_done, total = told_total, \
-             incumbent_s = CASE WHEN incumbent_s <= plan_s THEN incumbent_s \
-             ELSE coalesce(plan_s, incumbent_s) END, lower_bound_s = ",
-            bound_beside!(
-                "(CASE WHEN incumbent_s <= plan_s THEN incumbent_s \
-                 ELSE coalesce(plan_s, incumbent_s) END)"
-            ),
+             incumbent_s = ",
+            better_of!("plan_s", "incumbent_s"),
+            ", value = ",
+            better_of!("told_value", "value"),
+            ", value_bound = ",
+            least_value_bound!(),
+            ", lower_bound_s = ",
+            bound_beside!(better_of!("plan_s", "incumbent_s")),
             " FROM {rows $1 leased bigint, held bigint, told_stage text, told_done bigint, \
-             told_total bigint, plan_s double precision, told_bound_s double precision} AS told WHERE ",
+             told_total bigint, plan_s double precision, told_bound_s double precision, \
+             told_value double precision, told_value_bound double precision} AS told WHERE ",
             is_held!(),
             " RETURNING ",
             job_columns!()
@@ -99,6 +102,8 @@ impl Store {
             progress.total.into(),
             progress.incumbent_s.into(),
             progress.lower_bound_s.into(),
+            progress.value.into(),
+            progress.value_bound.into(),
         ]]);
         let Some(_) = update_leased(&mut transaction, update, "progress", now_us).await? else {
             return Ok(false);

@@ -20,7 +20,7 @@ macro_rules! migration {
 }
 
 /// Number, name and statements of every migration, oldest first.
-const HISTORY: [(&str, &str, &str); 17] = [
+const HISTORY: [(&str, &str, &str); 18] = [
     migration!("0001", "service"),
     migration!("0002", "incumbents"),
     migration!("0003", "reversible_legs"),
@@ -38,6 +38,7 @@ const HISTORY: [(&str, &str, &str); 17] = [
     migration!("0050", "job_memory"),
     migration!("0060", "claims"),
     migration!("0061", "leg_shards"),
+    migration!("0062", "values"),
 ];
 
 /// What brings a file of SQLite to the schema of this version.
@@ -95,6 +96,7 @@ mod tests {
             "0050 d0ab5f87f886f332",
             "0060 74212811e78bc568",
             "0061 ab0b578c3136576b",
+            "0062 b73772fbc555dfca",
         ];
         assert_eq!(HISTORY.map(digest), expected);
     }

@@ -31,6 +31,8 @@ pub(crate) struct NewIncumbent {
     pub(crate) total_time_s: f64,
     /// Lower bound on the duration when it was found, s.
     pub(crate) lower_bound_s: f64,
+    /// Sum of the values that it visits, where targets have values.
+    pub(crate) value: Option<f64>,
     /// Whether it violates a cone.
     pub(crate) keep_out_violated: bool,
 }
@@ -50,11 +52,13 @@ pub(super) async fn store_incumbent(
 ) -> Result<(), StoreError> {
     sql(
         "INSERT INTO incumbents (job, total_time_s, lower_bound_s, keep_out_violated, document, \
-         packed, digest) VALUES ($1, $2, $3, $4, $5, $6, $7) ON CONFLICT (job) DO UPDATE SET \
+         packed, digest, value) VALUES ($1, $2, $3, $4, $5, $6, $7, $8) ON CONFLICT (job) DO UPDATE SET \
          total_time_s = excluded.total_time_s, lower_bound_s = excluded.lower_bound_s, \
          keep_out_violated = excluded.keep_out_violated, document = excluded.document, \
-         packed = excluded.packed, digest = excluded.digest \
-         WHERE excluded.total_time_s < incumbents.total_time_s",
+         packed = excluded.packed, digest = excluded.digest, value = excluded.value \
+         WHERE excluded.value > incumbents.value \
+         OR ((excluded.value = incumbents.value OR incumbents.value IS NULL) \
+         AND excluded.total_time_s < incumbents.total_time_s)",
     )
     .bind(job)
     .bind(incumbent.total_time_s)
@@ -63,6 +67,7 @@ pub(super) async fn store_incumbent(
     .bind(&incumbent.document.document)
     .bind(incumbent.document.packed)
     .bind(&incumbent.document.digest)
+    .bind(incumbent.value)
     .execute(transaction)
     .await?;
     Ok(())
@@ -76,12 +81,13 @@ pub(super) async fn better_incumbent(
     ended: &Ended,
 ) -> Result<Option<Ended>, StoreError> {
     sql(
-        "SELECT document, packed, digest, total_time_s, lower_bound_s, keep_out_violated \
-         FROM incumbents \
-         WHERE job = $1 AND ($2 IS NULL OR total_time_s < $2)",
+        "SELECT document, packed, digest, total_time_s, lower_bound_s, value, keep_out_violated \
+         FROM incumbents WHERE job = $1 AND ($2 IS NULL OR value > $3 \
+         OR ((value = $3 OR value IS NULL) AND total_time_s < $2))",
     )
     .bind(job)
     .bind(ended.incumbent_s)
+    .bind(ended.value)
     .fetch_optional(transaction)
     .await
 }
@@ -94,6 +100,9 @@ impl FromRow for Ended {
             document: Some(PackedPlan::from_row(row)?),
             incumbent_s: row.get("total_time_s")?,
             lower_bound_s: row.get("lower_bound_s")?,
+            value: row.get("value")?,
+            // That of the job is kept.
+            value_bound: None,
             keep_out_violated: row.get("keep_out_violated")?,
             detail: None,
             code: None,

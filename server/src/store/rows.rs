@@ -101,6 +101,10 @@ row! {
         pub(crate) incumbent_s: Option<f64>,
         /// Lower bound on the duration, s.
         pub(crate) lower_bound_s: Option<f64>,
+        /// Sum of the values that the best plan so far visits, where targets have values.
+        pub(crate) value: Option<f64>,
+        /// Upper bound on that sum.
+        pub(crate) value_bound: Option<f64>,
         /// Whether the plan that the job ended with violates a cone.
         pub(crate) keep_out_violated: Option<bool>,
         /// Why the job ended without a plan.
@@ -167,6 +171,10 @@ pub(crate) struct ProgressRow {
     pub(crate) incumbent_s: Option<f64>,
     /// Lower bound on the duration, s.
     pub(crate) lower_bound_s: Option<f64>,
+    /// Sum of the values that the best plan so far visits, where targets have values.
+    pub(crate) value: Option<f64>,
+    /// Upper bound on that sum.
+    pub(crate) value_bound: Option<f64>,
 }
 
 /// Number of jobs in a state.

@@ -15,6 +15,7 @@ mod schema;
 mod shards;
 mod sqlite;
 mod statements;
+mod values;
 
 use super::database::row::FromRow;
 use super::database::statement::{Statement, sql};
@@ -35,6 +36,7 @@ fn plan(total_time_s: f64) -> NewIncumbent {
         document: PackedPlan::of(json(total_time_s).as_bytes()),
         total_time_s,
         lower_bound_s: 10.0,
+        value: None,
         // Some are, some are not.
         keep_out_violated: total_time_s > 50.0,
     }
@@ -48,6 +50,8 @@ async fn improve(store: &Store, lease: &JobRow, total_time_s: f64) -> bool {
         total: None,
         incumbent_s: Some(total_time_s),
         lower_bound_s: Some(10.0),
+        value: None,
+        value_bound: None,
     };
     let plan = plan(total_time_s);
     let written = store.progress(lease, &progress, Some(&plan), 3).await;
@@ -59,6 +63,8 @@ fn ended(state: JobState, plan: Option<NewIncumbent>) -> Ended {
         state,
         incumbent_s: plan.as_ref().map(|plan| plan.total_time_s),
         lower_bound_s: plan.as_ref().map(|plan| plan.lower_bound_s),
+        value: plan.as_ref().and_then(|plan| plan.value),
+        value_bound: None,
         keep_out_violated: plan.as_ref().map(|plan| plan.keep_out_violated),
         document: plan.map(|plan| plan.document),
         detail: None,
@@ -204,6 +210,11 @@ async fn change(store: &Store, statement: Statement<'_>) {
     let changed = statement.execute(&mut *transaction).await.expect("valid");
     assert!(changed > 0);
     transaction.commit().await.expect("changed");
+}
+
+async fn job(store: &Store) -> JobRow {
+    let found = store.job(ID).await.expect("read");
+    found.expect("the job is there")
 }
 
 /// The only value of a query.

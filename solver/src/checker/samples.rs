@@ -10,11 +10,17 @@ const PER_LEG: f64 = 20.0;
 /// Least number of states per flight.
 const PER_FLIGHT: f64 = 500.0;
 
-/// Times, s, strictly increasing: every control boundary, every arrival and departure, and evenly
-/// between those so that no gap exceeds a 500th of the flight or a 20th of its leg.
-pub(super) fn times(intervals: &[TorqueSpan<'_>], visits: &[Visit<'_>], total_s: f64) -> Vec<f64> {
+/// Times, s, strictly increasing: every control boundary, every arrival and departure, the ends of waits,
+/// and evenly between those so that no gap exceeds a 500th of the flight or a 20th of its leg.
+pub(super) fn times(
+    intervals: &[TorqueSpan<'_>],
+    visits: &[Visit<'_>],
+    waits: impl Iterator<Item = f64>,
+    total_s: f64,
+) -> Vec<f64> {
     let mut events: Vec<f64> = vec![0.0, total_s];
     events.extend(visits.iter().flat_map(|v| [v.arrival_s, v.departure_s]));
+    events.extend(waits);
     sort(&mut events);
     let mut knots: Vec<f64> = intervals.iter().map(|i| i.begin_s).collect();
     knots.extend(&events);

@@ -1,6 +1,7 @@
 //! Tests of the verification: the motion against closed forms, then whole flights.
 
 mod build;
+mod clock;
 mod cones;
 mod dense;
 mod enforced_cones;

@@ -1,4 +1,5 @@
-//! Whether every target is visited once, with the required state and stay, and the end is reached.
+//! Whether every required target is visited, none twice, with the required state and stay, and the end is
+//! reached.
 
 mod goal;
 
@@ -12,6 +13,7 @@ use super::{
 };
 use crate::model::plan::{Flight, Passage};
 use crate::model::scenario::{End, RateCondition, Scenario, Target};
+use crate::model::spacecraft::Wheel;
 use crate::model::spec::AttitudeEquivalence;
 use goal::{Goal, Miss};
 use nalgebra::Vector3;
@@ -72,6 +74,7 @@ pub(super) fn book<'a>(
             .filter(|p| p.target == target.id)
             .count()
         {
+            0 if target.value.is_some() => {}
             0 => failures.push(format!("target '{}' is not visited", target.id)),
             1 => {}
             n => failures.push(format!("target '{}' is visited {n} times", target.id)),
@@ -126,7 +129,7 @@ fn loose_end(scenario: &Scenario, flight: &Flight) -> Option<String> {
     })
 }
 
-fn snapped(time: f64, flight: &Flight, intervals: &[TorqueSpan<'_>]) -> f64 {
+pub(super) fn snapped(time: f64, flight: &Flight, intervals: &[TorqueSpan<'_>]) -> f64 {
     let after = intervals.partition_point(|interval| interval.begin_s < time);
     let boundary = |index: usize| intervals.get(index).map(|interval| interval.begin_s);
     let near = |boundary: &f64| (boundary - time).abs() <= SNAP * flight.total_time_s;
@@ -250,27 +253,47 @@ pub(super) fn driven_rests(
     visits: &[Visit<'_>],
     intervals: &[TorqueSpan<'_>],
 ) -> Vec<String> {
+    let wheels = scenario.spacecraft().wheels();
+    let culprit = |visit: &Visit<'_>| {
+        let since = driven_between(wheels, intervals, [visit.arrival_s, visit.departure_s])?;
+        Some(format!(
+            "target '{}' is to be held without torque, but a wheel is driven at {} s",
+            visit.target.id,
+            figure(since)
+        ))
+    };
+    visits.iter().filter_map(culprit).collect()
+}
+
+/// The first time of a span, s, at which a wheel is driven.
+pub(super) fn driven_between(
+    wheels: &[Wheel],
+    intervals: &[TorqueSpan<'_>],
+    [from_s, to_s]: [f64; 2],
+) -> Option<f64> {
     let total = intervals.last().map_or(0.0, |interval| interval.end_s);
     let slack = TIME_TOLERANCE * total;
-    let wheels = scenario.spacecraft().wheels();
     let driven = |interval: &&TorqueSpan<'_>| {
         interval.torque.iter().zip(wheels).any(|(torque, wheel)| {
             let largest = wheel.max_torque.max(-wheel.min_torque);
             torque.abs() > REST_TORQUE_TOLERANCE * largest
         })
     };
-    let culprit = |visit: &Visit<'_>| {
-        let during = |interval: &&TorqueSpan<'_>| {
-            interval.end_s.min(visit.departure_s) - interval.begin_s.max(visit.arrival_s) > slack
-        };
-        let culprit = intervals.iter().filter(during).find(driven)?;
-        Some(format!(
-            "target '{}' is to be held without torque, but a wheel is driven at {} s",
-            visit.target.id,
-            figure(culprit.begin_s.max(visit.arrival_s))
-        ))
+    let during = |interval: &&TorqueSpan<'_>| {
+        interval.end_s.min(to_s) - interval.begin_s.max(from_s) > slack
     };
-    visits.iter().filter_map(culprit).collect()
+    let culprit = intervals.iter().filter(during).find(driven)?;
+    Some(culprit.begin_s.max(from_s))
+}
+
+/// Angle of the turn from one state to another, rad.
+pub(super) fn turn_between(one: &Snapshot, other: &Snapshot) -> f64 {
+    let goal = Goal {
+        attitude: one.quaternion,
+        roll: None,
+        sign: AttitudeEquivalence::Rotation,
+    };
+    goal.missed_by(&other.quaternion).turn
 }
 
 /// Largest deviation of a rate component from its condition, rad/s.

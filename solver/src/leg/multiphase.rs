@@ -4,6 +4,7 @@
 //! free are continuous across it, which couples neighbouring legs.
 
 mod between_nodes;
+mod clocked;
 mod extended;
 mod passes;
 mod rolling;
@@ -18,12 +19,13 @@ use crate::leg::transcription::{MIN_TURN, Reserves, Scales, Transcription};
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::Dynamics;
 use crate::model::waypoint::Waypoint;
-use crate::nlp::{InteriorPoint, Iterate, NlpStatus, Settings};
+use crate::nlp::{Chain, InteriorPoint, Iterate, NlpStatus, Settings};
 use crate::run::stop::StopReason;
 pub(crate) use between_nodes::{
     attitudes_inside, deepest, depths_inside, excess_inside, keeps_limits_inside,
 };
 use between_nodes::{depths_between_nodes, excess_between_nodes};
+pub(crate) use clocked::solve_clocked;
 pub(crate) use extended::solve_extended;
 use nalgebra::DVector;
 use passes::{ACCURATELY, POLISHING, Pass, from_a_guess};
@@ -119,6 +121,8 @@ struct MultiphaseSolve<'a> {
     iterate: Iterate,
     /// Interval that ends at each waypoint between two legs.
     arrivals: Vec<usize>,
+    /// When the motion begins, s, where the elapsed time is a state.
+    begin: Option<f64>,
     solution: LegSolution,
 }
 
@@ -143,6 +147,7 @@ impl<'a> MultiphaseSolve<'a> {
             chain,
             iterate: scaled(guess, &scales),
             arrivals: arrivals(intervals),
+            begin: None,
             solution: LegSolution {
                 status: NlpStatus::IterationLimit,
                 profile: guess.clone(),
@@ -160,11 +165,17 @@ impl<'a> MultiphaseSolve<'a> {
         self.exact(stop)
     }
 
+    /// The exact solution of a converged motion.
+    fn exact(mut self, stop: &dyn Fn() -> Option<StopReason>) -> LegSolution {
+        self.make_exact(stop);
+        self.solution
+    }
+
     /// Corrects the turns and the reserves of a converged motion until the exact motion arrives and
     /// keeps its limits between nodes too.
-    fn exact(mut self, stop: &dyn Fn() -> Option<StopReason>) -> LegSolution {
+    fn make_exact(&mut self, stop: &dyn Fn() -> Option<StopReason>) {
         if self.solution.status != NlpStatus::Converged {
-            return self.solution;
+            return;
         }
         let mut reserves = self.chain.reserves().clone();
         for round in 0..MAX_ROUNDS {
@@ -179,7 +190,7 @@ impl<'a> MultiphaseSolve<'a> {
             if self.engine.settings.feasibility > ACCURATELY.feasibility {
                 self.engine.settings = ACCURATELY;
             } else if holds {
-                return self.solution;
+                return;
             }
             if missed > LARGE_MISS {
                 self.chain.refine(&self.iterate);
@@ -202,12 +213,11 @@ impl<'a> MultiphaseSolve<'a> {
                 self.tighten(&reserves, excess.max(depth));
             }
             if !self.converges(stop) {
-                return self.solution;
+                return;
             }
         }
         // Converged at the nodes, but the exact motion still misses its end or exceeds a limit.
         self.solution.status = NlpStatus::IterationLimit;
-        self.solution
     }
 
     /// Sets reserves raised for an excess, and the start of the next solve.
@@ -221,6 +231,7 @@ impl<'a> MultiphaseSolve<'a> {
             // Slacks and multipliers belong to the old limits: a cold start from the primal point.
             settings.initial_barrier = Settings::COLD.initial_barrier;
             self.iterate = scaled(&self.solution.profile, &self.scales);
+            self.set_clock();
         }
     }
 
@@ -255,11 +266,11 @@ impl<'a> MultiphaseSolve<'a> {
     /// Multipliers of the links that end between two legs. They are the multipliers of the
     /// condition that two copies of the state there, one for each leg, are equal.
     fn costates(&self) -> Vec<DVector<f64>> {
-        let states = 3 + self.dynamics.wheel_count();
+        let (states, wheels) = (self.chain.state_dim(), self.dynamics.wheel_count());
         let unit = self.scales.time / self.scales.momentum;
         let of_momenta = |&interval: &usize| {
             let multipliers = &self.iterate.lambda[interval * states..(interval + 1) * states];
-            DVector::from_column_slice(&multipliers[3..]) * unit
+            DVector::from_column_slice(&multipliers[3..3 + wheels]) * unit
         };
         self.arrivals.iter().map(of_momenta).collect()
     }
@@ -269,12 +280,13 @@ impl<'a> MultiphaseSolve<'a> {
         let report = self.engine.solve(&self.chain, &mut self.iterate, stop);
         self.solution = LegSolution {
             status: report.status,
-            profile: physical(&self.iterate, &self.scales, self.dynamics.wheel_count()),
+            profile: physical(&self.iterate, &self.scales, &self.chain),
             intervals: std::mem::take(&mut self.solution.intervals),
             iterations: self.solution.iterations + report.iterations,
             infeasibility: report.infeasibility,
             costates: self.costates(),
         };
+        self.read_clock();
         report.status == NlpStatus::Converged
     }
 }
@@ -324,15 +336,16 @@ fn scaled(profile: &Profile, scales: &Scales) -> Iterate {
     Iterate::cold(points, controls)
 }
 
-fn physical(iterate: &Iterate, scales: &Scales, wheels: usize) -> Profile {
+fn physical(iterate: &Iterate, scales: &Scales, chain: &Transcription) -> Profile {
     let mut profile = Profile::empty();
-    for point in iterate.points.chunks_exact(4 + wheels) {
+    let wheels = chain.control_dim() - 1;
+    for point in iterate.points.chunks_exact(chain.point_len()) {
         let components = [point[0], point[1], point[2], point[3]];
         // Retraction keeps quaternions at unit length.
         profile
             .attitudes
             .push(Attitude::from_xyzw(components).unwrap_or_else(Attitude::identity));
-        let momenta = point[4..].iter().map(|h| h * scales.momentum);
+        let momenta = point[4..4 + wheels].iter().map(|h| h * scales.momentum);
         profile.wheels.push(DVector::from_iterator(wheels, momenta));
     }
     for control in iterate.controls.chunks_exact(wheels + 1) {

@@ -18,11 +18,15 @@
 //! it rate limits hold in the middle of intervals as well ([`middle`]), and excesses found between
 //! nodes tighten all limits ([`Reserves`]).
 //!
+//! Where times of passages are bounded ([`PassageTimes`]), the elapsed time is one more state, which
+//! takes the length of each interval as a wheel momentum takes its change.
+//!
 //! The attitude link is `2 vec(q_{k+1}* q_k p_k) = 0` with the turn `p_k` of
 //! [`crate::leg::kinematics`].
 
 mod attitude_link;
 mod attitude_rows;
+mod clock;
 mod cones;
 mod demands;
 mod middle;
@@ -34,6 +38,7 @@ mod scales;
 mod tests;
 
 use crate::model::waypoint::{Waypoint, WheelCondition};
+pub(crate) use clock::PassageTimes;
 pub(crate) use reserves::{ConeDepth, Reserves};
 pub(crate) use rows::{Drift, Row};
 pub(crate) use scales::{MIN_TURN, Scales};
@@ -106,6 +111,8 @@ pub(crate) struct Transcription {
     /// Reserve kept from every limit at every node.
     reserves: Reserves,
     nodes: Vec<Node>,
+    /// Whether the elapsed time is a state.
+    has_clock: bool,
 }
 
 impl Transcription {
@@ -150,6 +157,7 @@ impl Transcription {
             longest: Vec::new(),
             reserves: Reserves::none(dynamics, intervals.iter().sum()),
             nodes: Vec::new(),
+            has_clock: false,
             dynamics: dynamics.clone(),
         };
         transcription.rates =
@@ -366,11 +374,11 @@ impl Chain for Transcription {
     }
 
     fn point_len(&self) -> usize {
-        4 + self.wheels()
+        1 + self.state_dim()
     }
 
     fn state_dim(&self) -> usize {
-        3 + self.wheels()
+        3 + self.wheels() + usize::from(self.has_clock)
     }
 
     fn control_dim(&self) -> usize {
@@ -451,7 +459,8 @@ impl Chain for Transcription {
         let middle = count + 2 * wheels;
         let z = &duals.inequality[middle..middle + self.middle_limits()];
         self.write_attitude_link(link, duals.gap, (middle, z), out);
-        for i in 0..wheels {
+        // The clock takes the length, which is the control after the changes.
+        for i in 0..states - 3 {
             let row = (3 + i) * out.vars;
             out.link_jacobian[row + 3 + i] = 1.0;
             out.link_jacobian[row + states + i] = 1.0;

@@ -1,8 +1,10 @@
 //! The answer: order, passage times, wheel torques, bound and verification.
 
 mod rolls;
+mod schedule;
 
 pub use rolls::Rolls;
+pub use schedule::{InclusionCost, Objective, Schedule, SkipReason, SkippedTarget, Wait};
 
 use crate::model::attitude::Attitude;
 use crate::model::cone::Cone;
@@ -51,7 +53,8 @@ pub struct Plan {
     pub optimality: Optimality,
     /// Duration including settle and dwell, s.
     pub total_time_s: f64,
-    /// No plan is shorter than this, s, in the sense of the kind.
+    /// No plan is shorter than this, s, in the sense of the kind; of a scenario with values, no plan of
+    /// at least the same value.
     pub lower_bound_s: f64,
     /// `(total - bound) / total`.
     pub relative_gap: f64,
@@ -69,6 +72,8 @@ pub struct Plan {
     pub flight: Flight,
     /// The rolls about the boresights that are pointed.
     pub rolls: Rolls,
+    /// What the clock adds; `None` for a scenario without windows, values and latest end.
+    pub schedule: Option<Schedule>,
     /// Sampled states, at every control boundary at least.
     pub states: Vec<State>,
     /// The margins of all limits.

@@ -331,6 +331,30 @@ pub enum Code {
     /// A direction of a body of the sky in a scenario without an epoch.
     #[strum(message = "Give the epoch of time zero, or the direction as a vector.")]
     EpochRequired,
+    /// Windows of one target that have some time in common.
+    #[strum(message = "Join the windows.")]
+    WindowsOverlap,
+    /// A window in which no visit fits, whatever the plan (warning).
+    #[strum(
+        message = "Look for a wrong unit or epoch, for settle and dwell longer than the window, or for \
+        a latest end before it."
+    )]
+    WindowUnusable,
+    /// A target that has to be visited and can be reached in none of its windows.
+    #[strum(
+        message = "Give the target a value, so that it may be left out, or another window; or begin \
+        the schedule earlier."
+    )]
+    WindowUnreachable,
+    /// Targets that all have to be visited, and that no order visits inside their windows.
+    #[strum(
+        message = "Give one of the targets of the message a value, so that it may be left out, or \
+        widen a window or latest_end_s."
+    )]
+    WindowsConflict,
+    /// A scenario with windows, values or a latest end in a form that cannot be planned yet.
+    #[strum(message = "Let every target be visited at rest, or leave windows and values out.")]
+    ClockNotPlanned,
     /// A file of another version of the program.
     #[strum(message = "Make the file again with this version.")]
     VersionMismatch,

@@ -15,6 +15,7 @@ mod pointing;
 mod state;
 mod target;
 mod unit_slips;
+mod windows;
 
 use crate::model::attitude::{Attitude, AttitudeContext};
 use crate::model::cone::Cone;
@@ -24,6 +25,7 @@ use crate::model::problem::{Faults, Problem};
 use crate::model::roll::{FreeRoll, Pointing, RollArcs};
 use crate::model::spacecraft::Spacecraft;
 use crate::model::spec::{OptionsSpec, ReferenceFrame, ScenarioSpec, TimeSystem};
+use crate::model::tolerances::TIME_TOLERANCE;
 pub(crate) use cone_conflicts::cone_problems;
 use directions::Sky;
 use jiff::civil::DateTime;
@@ -31,6 +33,7 @@ use limits::Limits;
 use nalgebra::Vector3;
 use pointing::Surroundings;
 use state::StartRoll;
+use windows::Calendar;
 
 /// The condition on a rate component at a passage.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,6 +112,48 @@ pub struct Target {
     pub settle: f64,
     /// Time to stay at rest after settling, s.
     pub dwell: f64,
+    /// When it may be visited, in order of time and disjoint; `None` at any time.
+    pub windows: Option<Vec<Window>>,
+    /// What a visit is worth; `None` where it is visited in every plan.
+    pub value: Option<f64>,
+}
+
+impl Target {
+    /// Settle and dwell time, s.
+    #[must_use]
+    pub fn service(&self) -> f64 {
+        self.settle + self.dwell
+    }
+
+    /// When a visit after an arrival begins at the earliest, s; `None` where no window is left for it. A
+    /// window may be missed by the tolerance of times.
+    #[must_use]
+    pub fn begin_after(&self, arrival: f64) -> Option<f64> {
+        let Some(windows) = &self.windows else {
+            return Some(arrival);
+        };
+        let in_time = arrival * (1.0 - TIME_TOLERANCE);
+        let fits = |window: &&Window| in_time.max(window.from) + self.service() <= window.to;
+        let next = windows.iter().find(fits)?;
+        Some(arrival.max(next.from))
+    }
+
+    /// Whether a visit is at rest, so that the body may stay in the attitude before and after it.
+    #[must_use]
+    pub fn rests(&self) -> bool {
+        let is_zero =
+            |rate: &RateCondition| matches!(rate, RateCondition::Fixed(value) if *value == 0.0);
+        self.rate.iter().all(is_zero)
+    }
+}
+
+/// A span of time, s from time zero, in which a whole visit may lie.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Window {
+    /// Begin, s.
+    pub from: f64,
+    /// End, s, after the begin.
+    pub to: f64,
 }
 
 /// A valid planning problem.
@@ -123,6 +168,7 @@ pub struct Scenario {
     end: Option<End>,
     targets: Vec<Target>,
     order_rules: OrderRules,
+    latest_end: Option<f64>,
     cones: Vec<Cone>,
     options: OptionsSpec,
 }
@@ -198,7 +244,10 @@ impl Scenario {
                 })
                 .then_some(end)
         });
-        let targets = target::read_all(spec, surroundings, &limits, findings);
+        let latest_end = spec.latest_end_s;
+        let latest_end = latest_end.map(|latest| windows::read_latest_end(latest, findings));
+        let calendar = Calendar::of(spec, epoch);
+        let targets = target::read_all(spec, surroundings, (&limits, calendar), findings);
         let order_rules = order::read(spec, findings);
         let cones = cones::read_all(spec, sky, findings);
         let options_valid = options::check(&spec.options, findings);
@@ -219,6 +268,10 @@ impl Scenario {
             },
             targets: targets?,
             order_rules: order_rules?,
+            latest_end: match latest_end {
+                Some(latest) => Some(latest?),
+                None => None,
+            },
             cones: cones?,
             options: options_valid.then(|| spec.options.clone())?,
         })
@@ -299,10 +352,24 @@ impl Scenario {
         &self.targets
     }
 
-    /// Rules for the order of the targets, by their indices; at least one order keeps them.
+    /// Rules for the order of the targets, by their indices; at least one order keeps them, unless
+    /// targets may be left out.
     #[must_use]
     pub fn order_rules(&self) -> &OrderRules {
         &self.order_rules
+    }
+
+    /// When the schedule ends at the latest, s; `None` where it may take any time.
+    #[must_use]
+    pub fn latest_end(&self) -> Option<f64> {
+        self.latest_end
+    }
+
+    /// Whether time of day, or what visits are worth, matters: with windows, values or a latest end.
+    #[must_use]
+    pub fn has_clock(&self) -> bool {
+        let clocked = |target: &Target| target.windows.is_some() || target.value.is_some();
+        self.latest_end.is_some() || self.targets.iter().any(clocked)
     }
 
     /// The cones that bound where boresights point.

@@ -10,12 +10,14 @@ mod cones;
 mod labels;
 mod pointing;
 mod spacecraft;
+mod window;
 
 pub use attitude::{AttitudeSpec, BoresightChoice, PairSpec};
 pub use cones::{Applies, CelestialBody, ConeSpec, DirectionSpec};
 pub use labels::{ReferenceFrame, TimeSystem};
 pub use pointing::{OrientationSpec, PointingSpec};
 pub use spacecraft::{BoresightSpec, SpacecraftOrReference, SpacecraftSpec, WheelSpec};
+pub use window::WindowSpec;
 
 use super::epoch;
 use super::input::{
@@ -28,6 +30,12 @@ use super::input::{
 pub const MAX_TARGETS: usize = 10_000;
 /// Limit of the cones of a scenario, keep-out and keep-in together.
 pub const MAX_CONES: usize = 1000;
+/// Limit of the windows of a target: passes of a satellite over a year.
+pub const MAX_WINDOWS: usize = 10_000;
+/// Limit of times of a schedule, s, before and after time zero: some thirty years.
+pub const MAX_TIME_S: f64 = 1e9;
+/// Limit of the value of a target.
+pub const MAX_VALUE: f64 = 1e12;
 
 input_object! {
     /// A planning problem. Numbers are SI with the unit in the field name; unknown fields are refused.
@@ -52,6 +60,9 @@ input_object! {
         /// Visited once each, in an order that keeps their `position` and `after`; their sequence here does
         /// not matter.
         pub targets: Vec<TargetSpec> as UpTo<MAX_TARGETS, TargetSpec> = required_or(Vec::new()),
+        /// The schedule ends by then, s from time zero, with the end's attitude reached; any time without
+        /// it.
+        pub latest_end_s: Option<f64> = optional().above(0.0).at_most(MAX_TIME_S),
         /// Cones in which a boresight must not point.
         pub keep_out: Vec<ConeSpec> as UpTo<MAX_CONES, ConeSpec> = or(Vec::new()),
         /// Cones in which a boresight must point, as a solar panel's normal around the Sun.
@@ -99,11 +110,18 @@ input_object! {
         pub dwell_s: f64 = or(0.0).at_least(0.0),
         /// Time to settle at rest after arrival.
         pub settle_s: f64 = or(0.0).at_least(0.0),
-        /// Place in the order of visits, counted from 1; any without it. No two targets have the same.
+        /// Place in the order of visits, counted from 1 among the targets that are visited; any without
+        /// it. No two targets have the same.
         pub position: Option<usize> = optional().at_least(1.0),
-        /// Identifiers of targets that must have been visited before. Some order has to keep all
-        /// positions and precedences.
+        /// Identifiers of targets that must have been visited before, those aside that a plan leaves out.
+        /// Some order has to keep all positions and precedences.
         pub after: Vec<String> = or(Vec::new()),
+        /// When it may be visited: from arrival to departure a visit lies inside one of these. Any time
+        /// without the list, never with an empty one.
+        pub windows: Option<Vec<WindowSpec>> as Option<UpTo<MAX_WINDOWS, WindowSpec>> = optional(),
+        /// What a visit is worth. A target with a value may be left out, one without is visited in every
+        /// plan. The greatest sum of values comes first, the least total time second.
+        pub value: Option<f64> = optional().above(0.0).at_most(MAX_VALUE),
     }
 }
 

@@ -28,6 +28,10 @@ pub struct Progress {
     pub incumbent_s: Option<f64>,
     /// Lower bound on the duration of every plan so far, s.
     pub lower_bound_s: Option<f64>,
+    /// Sum of the values that the best plan so far visits, where targets have values.
+    pub value: Option<f64>,
+    /// Upper bound on that sum of every plan so far.
+    pub value_bound: Option<f64>,
 }
 
 impl Progress {

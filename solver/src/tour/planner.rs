@@ -5,6 +5,7 @@ mod assemble;
 mod bounds_by_form;
 mod canonical;
 mod certificate;
+mod clock;
 mod first_tour;
 mod fixed_order;
 mod flight_times;
@@ -21,6 +22,7 @@ mod memory;
 mod places;
 mod plan_builder;
 mod proved_legs;
+mod scheduled;
 mod segment_key;
 mod segment_solve;
 mod solved_segments;
@@ -123,6 +125,9 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let problems = feasibility_problems(scenario);
     if !problems.is_empty() {
         return Outcome::Infeasible(problems);
+    }
+    if scenario.has_clock() {
+        return clock::solve_schedule(scenario, run);
     }
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);

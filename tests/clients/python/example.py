@@ -29,6 +29,8 @@ def main(address, scenario, folder):
     print(f"{plan['status']}: {plan['total_time_s']:.2f} s, gap {100 * plan['relative_gap']:.2f} %")
     for passage in plan["passages"]:
         print(f"  {passage['time_s']:9.2f} s  {passage['target']}")
+    for skipped in plan.get("skipped", []):
+        print(f"  left out     {skipped['target']}: {skipped['reason']}")
     out = Path(folder)
     out.mkdir(parents=True, exist_ok=True)
     (out / "plan.json").write_text(json.dumps(plan), encoding="utf-8")

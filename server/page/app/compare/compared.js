@@ -3,7 +3,7 @@
 import { Cursor } from "../cursor.js";
 import { el, section, table } from "../dom.js";
 import { flightOf } from "../flight.js";
-import { fixed, percent, signed } from "../format.js";
+import { fixed, percent, signed, significant } from "../format.js";
 import { playback } from "../playback.js";
 import { saving } from "../plan/facts.js";
 import { sphere } from "../sphere/sphere.js";
@@ -46,6 +46,7 @@ function namesOf(sides) {
 
 /** Figures of a plan: name, value, how it is written, and whether a difference says something. */
 const FIGURES = [
+  ["Value", (plan) => plan.value, significant],
   ["Total time, s", (plan) => plan.total_time_s, fixed],
   ["Lower bound, s", (plan) => plan.lower_bound_s, fixed],
   ["Proved bound, s", (plan) => plan.certified_lower_bound_s, fixed],
@@ -61,9 +62,10 @@ function figures(sides, names) {
   const columns = [{ title: "Figure", head: true }, ...SIDES.map((side) => ({ title: capital(side), number: true })), { title: "Difference", number: true }];
   const rows = FIGURES.map(([name, of, text]) => {
     const values = sides.map(({ plan }) => of(plan) ?? null);
+    if (values.every((value) => value === null)) return null;
     const known = values.every((value) => value !== null);
     return [name, ...values.map((value) => text(value)), known ? signed(text(values[1] - values[0])) : "–"];
-  });
+  }).filter(Boolean);
   const links = sides.map(({ job }, index) => el("a", { href: `#/plans/${job.id}` }, names[index]));
   return section("Figures", { class: "card", head: el("div", { class: "tools" }, "First", links[0], "Second", links[1]) },
     table("Figures of both plans", columns, rows));

@@ -3,8 +3,10 @@
 // What cannot be read as its type goes into the document as a string: nothing that was typed is lost,
 // and the service says what is wrong with it.
 
+import { flat } from "../pretty.js";
 import { find } from "./json-tree.js";
 import { drop, put, rawAt } from "./json-edit.js";
+import { cellOf, windowsOf } from "./windows.js";
 
 const NUMBER = /^-?(0|[1-9]\d*)(\.\d+)?(e[+-]?\d+)?$/i;
 const LOOSE = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
@@ -44,6 +46,10 @@ const TYPES = {
   names: {
     read: (raw) => items(raw)?.map((item) => plain(JSON.stringify(item))).join(", ") ?? plain(raw),
     write: (cell) => JSON.stringify(cell.split(/[,;]/).map((name) => name.trim()).filter(Boolean)),
+  },
+  windows: {
+    read: (raw) => cellOf(JSON.parse(raw)) ?? plain(raw),
+    write: (cell) => flat(windowsOf(cell) ?? cell.trim()),
   },
   // The name of a boresight, or an axis of the body.
   boresight: {

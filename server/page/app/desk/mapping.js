@@ -5,6 +5,7 @@ import { numberText, written } from "./cells.js";
 import { orientationAs } from "./kinds.js";
 import { freeName, withCells } from "./rows.js";
 import { pathIn, TARGETS } from "./tables.js";
+import { windowsOf } from "./windows.js";
 
 /** Names of columns, as `slewplan` reads tables; those of further columns are their keys. */
 const NAMES = {
@@ -14,7 +15,7 @@ const NAMES = {
   roll: ["roll", "roll_deg"], pitch: ["pitch", "pitch_deg"], yaw: ["yaw", "yaw_deg"],
   roll_min: ["roll_min", "roll_min_deg"], roll_max: ["roll_max", "roll_max_deg"],
   qx: ["qx", "q_x", "x"], qy: ["qy", "q_y", "y"], qz: ["qz", "q_z", "z"], qw: ["qw", "q_w", "w"],
-  dwell: ["dwell", "dwell_s"], settle: ["settle", "settle_s"],
+  dwell: ["dwell", "dwell_s"], settle: ["settle", "settle_s"], windows: ["windows", "window"], value: ["value"],
 };
 
 /** The kinds in the order in which columns mean them; a roll alone belongs to two of them. */
@@ -90,6 +91,7 @@ function problemOf(column, cell, kind) {
   if (!pathIn(column, kind)) return null;
   if (cell === "") return column.kept ? "a number is missing" : null;
   if (column.type === "number" && numberText(cell) === null) return "this is no number";
+  if (column.type === "windows" && !windowsOf(cell)) return "these are no windows: write from..to";
   if (column.type === "vector" && written("vector", cell).startsWith('"')) return "these are no numbers";
   if (column.key === "dec" && Math.abs(Number(numberText(cell))) > 90) return "the declination is beyond a pole";
   return null;

@@ -6,6 +6,7 @@
 // target is a further entry here.
 
 import { pathOf } from "./json-tree.js";
+import { WINDOWS_HINT } from "./windows.js";
 import { KIND_TITLES, kindOfDirection, kindOfOrientation } from "./kinds.js";
 
 const column = (key, title, type, at, more = {}) => ({
@@ -71,6 +72,8 @@ export const TARGETS = rows("targets", "target", ["targets"], {
     column("rate_max", "Rate to", "vector", "/rate_max_rad_s", { unit: "rad/s", optional: true, wide: true, hint: "x y z, – for none" }),
     column("settle", "Settle", "number", "/settle_s", { unit: "s", optional: true }),
     column("dwell", "Dwell", "number", "/dwell_s", { unit: "s", optional: true }),
+    column("windows", "Windows", "windows", "/windows", { optional: true, wide: true, hint: WINDOWS_HINT }),
+    column("value", "Value", "number", "/value", { optional: true, hint: "may be left out for this; without one it must be visited" }),
     column("position", "Position", "number", "/position", { optional: true }),
     column("after", "After", "names", "/after", { optional: true, wide: true, hint: "names, with commas between" }),
   ],

@@ -21,12 +21,21 @@ function limitOf({ options }) {
   return limit === undefined ? USUAL_LIMIT_S : limit;
 }
 
+/** What is visited and what could be, as a figure; null where targets have no values. */
+function worth({ value, value_bound: bound }) {
+  if (typeof value !== "number" || !(value > 0 || bound > 0)) return null;
+  const known = typeof bound === "number";
+  const note = !known ? null : bound > value ? `no plan has more than ${significant(bound)}` : "no plan has more";
+  return ["Value", significant(value), note];
+}
+
 /** How a job stands, with the time that is left of the limit while it runs. */
 export function standing(job, scenario, elapsed) {
   const limit = limitOf(scenario);
   const left = job.state === "running" && limit !== null && elapsed !== null ? Math.max(0, limit - elapsed) : null;
   const steps = job.total ? `${job.done ?? 0} of ${job.total}` : null;
   return strip([
+    worth(job),
     ["Best plan", seconds(job.incumbent_s)],
     ["Lower bound", seconds(job.lower_bound_s)],
     ["Gap", percent(job.relative_gap)],
@@ -36,8 +45,10 @@ export function standing(job, scenario, elapsed) {
   ]);
 }
 
-/** What is saved against slews about the eigenaxis in the same order, s; null where one is unknown. */
+/** What is saved against slews about the eigenaxis in the same order, s; null where one is unknown, and with a
+ * clock, by which the same order would not end sooner. */
 export function saving(plan) {
+  if (plan.objective) return null;
   const eigenaxis = plan.legs.map((leg) => leg.eigenaxis_duration_s);
   if (!plan.legs.length || eigenaxis.some((duration) => duration === null)) return null;
   return plan.legs.reduce((total, leg, index) => total + eigenaxis[index] - leg.duration_s, 0);
@@ -48,6 +59,7 @@ export function facts(plan) {
   const saved = saving(plan);
   const gap = plan.relative_gap;
   return strip([
+    worth(plan),
     ["Total time", seconds(plan.total_time_s)],
     ["Lower bound", seconds(plan.lower_bound_s), KINDS[plan.lower_bound_kind]],
     ["Gap", percent(gap), gap === 0 ? "no order is better, given this bound" : null],

@@ -8,8 +8,9 @@ const COLUMNS = [
   { title: "Leg", head: true },
   { title: "Start, s", number: true },
   { title: "Duration, s", number: true },
-  { title: "Settle, s", number: true, rest: true },
-  { title: "Dwell, s", number: true, rest: true },
+  { title: "Wait, s", number: true, rest: "wait" },
+  { title: "Settle, s", number: true, rest: "settle" },
+  { title: "Dwell, s", number: true, rest: "dwell" },
   { title: "Compared" },
   { title: "Eigenaxis, s", number: true },
   { title: "Saved, s", number: true },
@@ -18,13 +19,14 @@ const COLUMNS = [
   { title: "Proved bound, s", number: true },
 ];
 
-/** The section with all legs; settle and dwell have columns where there are any. */
+/** The section with all legs; waits, settle and dwell have columns where there are any. */
 export function legs(plan, flight) {
   const rests = (leg, kind) => flight.phases
     .filter((phase) => phase.kind === kind && phase.label === leg.to)
     .reduce((total, phase) => total + phase.end - phase.begin, 0);
-  const rest = flight.phases.some((phase) => phase.kind !== "slew");
-  const columns = COLUMNS.filter((column) => rest || !column.rest);
+  const has = (kind) => flight.phases.some((phase) => phase.kind === kind);
+  const kinds = [...has("wait") ? ["wait"] : [], ...has("settle") || has("dwell") ? ["settle", "dwell"] : []];
+  const columns = COLUMNS.filter(({ rest }) => !rest || kinds.includes(rest));
   const longest = Math.max(...plan.legs.flatMap((leg) => [leg.duration_s, leg.eigenaxis_duration_s ?? 0]));
   const rows = plan.legs.map((leg) => {
     const eigenaxis = leg.eigenaxis_duration_s;
@@ -33,7 +35,7 @@ export function legs(plan, flight) {
       `${leg.from} → ${leg.to}`,
       fixed(leg.start_s),
       fixed(leg.duration_s),
-      ...rest ? ["settle", "dwell"].map((kind) => fixed(rests(leg, kind) || null)) : [],
+      ...kinds.map((kind) => fixed(rests(leg, kind) || null)),
       bar(leg.duration_s / longest, (eigenaxis ?? 0) / longest),
       fixed(eigenaxis),
       fixed(saved),

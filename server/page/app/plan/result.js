@@ -11,6 +11,8 @@ import { alternatives } from "./alternatives.js";
 import { downloads } from "./downloads.js";
 import { facts, order } from "./facts.js";
 import { orderEdit } from "./order-edit.js";
+import { schedule } from "./schedule.js";
+import { skipped } from "./skipped.js";
 import { legs } from "./legs.js";
 import { matrix } from "./matrix.js";
 import { verification } from "./verification.js";
@@ -32,6 +34,8 @@ export function result(job, plan, scenario, beside, signal) {
     isFinal(job.state) ? facts(plan) : el("p", { class: "quiet so-far" }, `A plan of ${seconds(plan.total_time_s)}, the best when it was read:`),
     order(plan, scenario, cursor, signal),
     flown(flight, cursor, signal),
+    schedule(plan, scenario, flight, cursor, signal),
+    skipped(plan, scenario),
     legs(plan, flight),
     isFinal(job.state) ? orderEdit(job, plan, scenario, signal) : null,
     alternatives(job, plan, scenario, signal),

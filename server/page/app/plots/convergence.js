@@ -1,7 +1,8 @@
-// How a search went: the best plan and the bound as steps over time.
+// How a search went: the best plan and the bound as steps over time. Where targets have values these are
+// drawn, which count first, else the times.
 
 import { disclosure, el, table } from "../dom.js";
-import { fixed, percent } from "../format.js";
+import { fixed, percent, significant } from "../format.js";
 import { colour } from "./palette.js";
 import { plot } from "./plot.js";
 
@@ -9,13 +10,23 @@ const HEIGHT = 190;
 /** Share of the values above and below them, so that equal ones are not magnified into noise. */
 const LEAST_ROOM = 0.005;
 
+const TIMES = {
+  names: ["best plan, s", "lower bound, s"], titles: ["Best plan, s", "Lower bound, s"], text: (value) => fixed(value),
+  of: ({ incumbent_s: incumbent, lower_bound_s: bound, relative_gap: gap }) => ({ incumbent, bound, gap }),
+};
+const VALUES = {
+  names: ["value of the best plan", "upper bound of the value"], titles: ["Value", "Upper bound of it"], text: (value) => significant(value, 6),
+  of: ({ value = null, value_bound: bound = null }) => ({ incumbent: value, bound, gap: bound > 0 ? (bound - (value ?? 0)) / bound : null }),
+};
+
 /** A chart that takes events of a job. */
 export function convergence(signal) {
   const rows = [];
-  const place = el("div", { class: "plot", role: "img", "aria-label": "Best plan and lower bound over the time of the search" });
-  const key = el("ul", { class: "key" },
-    el("li", {}, el("span", { class: "swatch incumbent", "aria-hidden": "true" }), "best plan, s"),
-    el("li", {}, el("span", { class: "swatch bound", "aria-hidden": "true" }), "lower bound, s"));
+  let measure = TIMES;
+  const place = el("div", { class: "plot", role: "img", "aria-label": "Best plan and bound over the time of the search" });
+  const names = [el("span", {}, TIMES.names[0]), el("span", {}, TIMES.names[1])];
+  const key = el("ul", { class: "key" }, ["incumbent", "bound"].map((kind, index) =>
+    el("li", {}, el("span", { class: `swatch ${kind}`, "aria-hidden": "true" }), names[index])));
   const note = el("p", { class: "quiet" }, "Nothing is known so far.");
   place.hidden = true;
   let drawn = null;
@@ -32,12 +43,18 @@ export function convergence(signal) {
   }
   return {
     node: el("div", { class: "chart" }, el("div", { class: "chart-head" }, key), place, note,
-      disclosure("Progress as a table", () => asTable(rows))),
+      disclosure("Progress as a table", () => asTable(rows, measure))),
     add(event) {
-      if (event.elapsed_s === null || (event.incumbent_s === null && event.lower_bound_s === null)) return;
+      if (measure === TIMES && event.value_bound > 0) {
+        measure = VALUES;
+        rows.length = 0;
+        names.forEach((node, index) => (node.textContent = measure.names[index]));
+      }
+      const known = measure.of(event);
+      if (event.elapsed_s === null || (known.incumbent === null && known.bound === null)) return;
       // A new attempt begins at zero again.
       if (rows.length && event.elapsed_s < rows.at(-1).time) rows.length = 0;
-      const row = { time: event.elapsed_s, incumbent: event.incumbent_s, bound: event.lower_bound_s, gap: event.relative_gap };
+      const row = { time: event.elapsed_s, ...known };
       const same = (other) => other && other.incumbent === row.incumbent && other.bound === row.bound;
       // Of a time without news only its begin and end are kept.
       if (same(rows.at(-1)) && same(rows.at(-2))) rows.pop();
@@ -68,11 +85,8 @@ function padded(_, min, max) {
   return [min - room, max + room];
 }
 
-function asTable(rows) {
-  const columns = [
-    { title: "Time, s", number: true }, { title: "Best plan, s", number: true },
-    { title: "Lower bound, s", number: true }, { title: "Gap", number: true },
-  ];
+function asTable(rows, { titles, text }) {
+  const columns = ["Time, s", ...titles, "Gap"].map((title) => ({ title, number: true }));
   return table("Progress of the search", columns, rows.map((row) =>
-    [fixed(row.time, 3), fixed(row.incumbent), fixed(row.bound), percent(row.gap)]));
+    [fixed(row.time, 3), text(row.incumbent), text(row.bound), percent(row.gap)]));
 }

@@ -1,12 +1,12 @@
-// Slew, settle and dwell as bars, aligned with the plots above them.
+// Slew, wait, settle and dwell as bars before the windows that they lie in, aligned with the plots above them.
 
 import { disclosure, el, table } from "../dom.js";
 import { fixed } from "../format.js";
 import { letters } from "./palette.js";
 
-const KINDS = ["slew", "settle", "dwell", "cone", "limit"];
-/** What stands in the bars of violations; those of several wheels may cover each other. */
-const ALARMS = { cone: "in", limit: "" };
+const KINDS = ["slew", "wait", "settle", "dwell", "cone", "limit"];
+/** What stands in bars that have no number of a target; violations of several wheels may cover each other. */
+const TEXTS = { wait: "", cone: "in", limit: "" };
 /** What a character takes in a bar, px; a bar without room for its text has none. */
 const CHARACTER = 8;
 
@@ -16,10 +16,11 @@ export function lanes(flight, look) {
   const phases = [...flight.phases, ...flight.alarms];
   const used = KINDS.filter((kind) => kind === "slew" || phases.some((phase) => phase.kind === kind));
   const bars = phases.map((phase) => ({ phase, node: bar(phase, look) }));
+  const windows = flight.windows.map((phase) => ({ phase, node: el("div", { class: "lane-window", title: `window of ${spanText(phase)}` }) }));
   const marker = el("div", { class: "lane-marker" });
   const tracks = used.map((kind) => el("div", { class: "track" },
     bars.filter(({ phase }) => phase.kind === kind).map(({ node }) => node)));
-  const field = el("div", { class: "lane-field" }, tracks, marker);
+  const field = el("div", { class: "lane-field" }, windows.map(({ node }) => node), tracks, marker);
   const node = el("div", { class: "chart lanes" },
     el("div", { class: "chart-head" }, el("h3", {}, "Phases")),
     el("div", { class: "lane-rows" },
@@ -36,11 +37,14 @@ export function lanes(flight, look) {
   };
   const renew = () => {
     const width = field.clientWidth;
-    for (const { phase, node } of bars) {
+    for (const { phase, node } of [...windows, ...bars]) {
       const [begin, end] = [at(phase.begin), at(phase.end)];
       node.style.left = `${begin}%`;
       node.style.width = `max(2px, ${end - begin}% - 1px)`;
       node.hidden = end < 0 || begin > 100;
+    }
+    for (const { phase, node } of bars) {
+      const [begin, end] = [at(phase.begin), at(phase.end)];
       const text = node.firstChild;
       text.hidden = text.textContent === "" || ((end - begin) * width) / 100 < CHARACTER * letters() * (text.textContent.length + 1);
     }
@@ -50,9 +54,11 @@ export function lanes(flight, look) {
   return { node, data, show, zoom: (begin, end) => { [from, to] = [begin, end]; renew(); } };
 }
 
+const spanText = ({ name, begin, end }) => `${name}: ${fixed(begin, 1)} to ${fixed(end, 1)} s`;
+
 function bar(phase, look) {
-  const text = ALARMS[phase.kind] ?? (phase.number ? String(phase.number) : "end");
-  const title = `${phase.name}: ${fixed(phase.begin, 1)} to ${fixed(phase.end, 1)} s`;
+  const text = TEXTS[phase.kind] ?? (phase.number ? String(phase.number) : "end");
+  const title = spanText(phase);
   const room = 0.15 * (phase.end - phase.begin);
   return el("div", {
     class: `bar ${phase.kind}`, title,

@@ -78,7 +78,7 @@ function within(drawn, paint) {
 function shade(drawn, phases) {
   const { ctx, bbox } = drawn;
   for (const phase of phases) {
-    if (phase.kind === "slew") continue;
+    if (phase.kind === "slew" || phase.kind === "wait") continue;
     ctx.fillStyle = colour(`${phase.kind}-shade`);
     const [begin, end] = [phase.begin, phase.end].map((time) => drawn.valToPos(time, "x", true));
     ctx.fillRect(begin, bbox.top, Math.max(end - begin, 1), bbox.height);

@@ -20,6 +20,12 @@ const STUDIES = [["flight", "Fly in closed loop"], ["authority", "What share of 
 /** What is not sooner by this is the same plan. */
 const LEAST_GAIN_S = 1e-4;
 
+/** Whether the best plan of an event is better than the one that is shown: worth more, or as much and sooner. */
+function isBetter({ incumbent_s: incumbent, value = null }, shown) {
+  if (shown.incumbent === null || (value ?? 0) > (shown.value ?? 0)) return true;
+  return (value ?? 0) === (shown.value ?? 0) && incumbent <= shown.incumbent - LEAST_GAIN_S;
+}
+
 /** The view at "#/plans/{id}". */
 export function plan({ id, signal }) {
   const page = new PlanPage(id, signal);
@@ -33,7 +39,7 @@ class PlanPage {
   #job = null;
   #scenario = null;
   #begun = 0;
-  #shown = { incumbent: null, final: false, doubt: null, isFailed: false, isFlown: false };
+  #shown = { incumbent: null, value: null, final: false, doubt: null, isFailed: false, isFlown: false };
   #drawing = new AbortController();
 
   #title = el("h1", {}, "Plan");
@@ -108,7 +114,7 @@ class PlanPage {
     if (event.elapsed_s !== null) this.#begun = Date.now() - 1000 * event.elapsed_s;
     this.#renew();
     if (isFinal(event.state) || event.incumbent_s === null) return;
-    if (event.incumbent_s > (this.#shown.incumbent ?? Infinity) - LEAST_GAIN_S) return;
+    if (!isBetter(event, this.#shown)) return;
     if (this.#shown.incumbent === null) this.#draw();
     else this.#announce();
   }
@@ -142,7 +148,7 @@ class PlanPage {
   async #draw() {
     if (this.#shown.final) return;
     const final = isFinal(this.#job.state);
-    if (!final) this.#shown.incumbent = this.#job.incumbent_s;
+    if (!final) [this.#shown.incumbent, this.#shown.value] = [this.#job.incumbent_s, this.#job.value ?? null];
     let found = null;
     try {
       found = await read(`/v1/plans/${this.#id}/result`, this.#signal);
@@ -157,7 +163,7 @@ class PlanPage {
     // An earlier plan that arrives late does not replace the last one.
     if (this.#shown.final) return;
     this.#shown = {
-      incumbent: found.total_time_s ?? null, final, doubt: doubtOf(checkedPlan(found)),
+      incumbent: found.total_time_s ?? null, value: found.value ?? null, final, doubt: doubtOf(checkedPlan(found)),
       isFailed: found.verification?.passed === false, isFlown: Boolean(found.trajectory?.states?.length),
     };
     this.#news.replaceChildren();

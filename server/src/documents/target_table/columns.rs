@@ -21,10 +21,12 @@ pub(super) enum Column {
     W,
     Dwell,
     Settle,
+    Windows,
+    Value,
 }
 
 /// The names of every column, the usual one first.
-const NAMES: [(Column, &[&str]); 14] = [
+const NAMES: [(Column, &[&str]); 16] = [
     (Column::Id, &["id", "name", "target"]),
     (
         Column::RightAscension,
@@ -45,6 +47,11 @@ const NAMES: [(Column, &[&str]); 14] = [
     (Column::W, &["qw", "q_w", "w"]),
     (Column::Dwell, &["dwell", "dwell_s"]),
     (Column::Settle, &["settle", "settle_s"]),
+    (
+        Column::Windows,
+        &["windows", "windows_s", "window", "window_s"],
+    ),
+    (Column::Value, &["value"]),
 ];
 
 /// The form of the attitudes of a table.

@@ -2,6 +2,7 @@
 
 use super::cell::cell_problem;
 use super::columns::{AttitudeColumns, Column, Columns};
+use super::windows;
 use crate::documents::document::{Member, Node};
 use csv::StringRecord;
 use slewplan_solver::model::problem::{Code, Problem};
@@ -42,13 +43,31 @@ impl Row<'_> {
             member("id", Node::Text(id.into())),
             self.orientation(boresight, problems),
         ];
-        for (column, name) in [(Column::Dwell, "dwell_s"), (Column::Settle, "settle_s")] {
+        let numbers = [
+            (Column::Dwell, "dwell_s"),
+            (Column::Settle, "settle_s"),
+            (Column::Value, "value"),
+        ];
+        for (column, name) in numbers {
             // An empty cell is the default.
             if self.is_filled(column) {
                 members.push(member(name, self.number(column, problems)));
             }
         }
+        if self.is_filled(Column::Windows) {
+            members.push(member("windows", self.windows(problems)));
+        }
         Node::Object(members.into())
+    }
+
+    fn windows(&self, problems: &mut Vec<Problem>) -> Node {
+        let cell = self.cell(Column::Windows).unwrap_or_default();
+        windows::read(cell).unwrap_or_else(|| {
+            let found = Node::Text(cell.into()).description();
+            let message = format!("expected windows, found {found}");
+            problems.push(self.problem(Column::Windows, Code::WrongType, message, windows::HINT));
+            Node::Null
+        })
     }
 
     /// The attitude, or a pointed boresight where the sky is given without a roll.

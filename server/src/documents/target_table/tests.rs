@@ -84,6 +84,24 @@ fn without_a_roll_it_is_left_to_the_plan() {
 }
 
 #[test]
+fn windows_and_values_have_columns() {
+    assert_eq!(
+        json("id,ra,dec,Window [s],value\na,1,2,0..60 90/120,3.5\nb,1,2,,\n"),
+        r#"[{"id":"a","pointing":{"boresight":[0.0,0.0,1.0],"ra_dec_deg":[1.0,2.0]},"value":3.5,"windows":[{"from_s":0.0,"to_s":60.0},{"from_s":90.0,"to_s":120.0}]},{"id":"b","pointing":{"boresight":[0.0,0.0,1.0],"ra_dec_deg":[1.0,2.0]}}]"#
+    );
+    // The epoch is that of the scenario.
+    let dated = "id;ra;dec;windows\na;1;2;2026-01-01T00:00:00..2026-01-01T00:01:00\n";
+    assert!(json(dated).contains(r#""from":"2026-01-01T00:00:00""#));
+    expect_refused(
+        "id,ra,dec,windows,value\na,1,2,noon,high\n",
+        &[
+            ("line 2, column 5 (value)", Code::WrongType),
+            ("line 2, column 4 (windows)", Code::WrongType),
+        ],
+    );
+}
+
+#[test]
 fn limits_of_the_roll_are_refused_where_they_stand() {
     expect_refused(
         "id,ra,dec,roll_min,roll_max\na,1,91,0,9\nb,1,2,9,0\nc,1,2,9,\nd,1,2,,0\ne,1,2,x,0\n",

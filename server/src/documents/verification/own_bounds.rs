@@ -2,6 +2,7 @@
 //!
 //! Whether a bound is proved is not asked here, but by `slewplan certify`.
 
+use super::number;
 use crate::documents::document::Node;
 use slewplan_solver::checker::TIME_TOLERANCE;
 use slewplan_solver::model::problem::{Code, Problem};
@@ -45,14 +46,6 @@ pub(super) fn above_times(plan: &Node, total_time_s: f64) -> Vec<Problem> {
 /// A member that is a number above a time, s.
 fn above(object: &Node, name: &str, time_s: f64) -> Option<f64> {
     number(object, name).filter(|bound_s| *bound_s > time_s)
-}
-
-fn number(object: &Node, name: &str) -> Option<f64> {
-    match object.member(name)? {
-        Node::Integer(value) => Some(*value as f64),
-        Node::Number(value) => Some(*value),
-        _ => None,
-    }
 }
 
 #[cfg(test)]

@@ -8,7 +8,8 @@
 //! come closer to the motion than that.
 
 use super::calendar::{self, CalendarTime, NO_EPOCH};
-use super::trajectory::{FlightSample, FlightSegment, SampledFlight, SegmentKind};
+use super::phases::SegmentKind;
+use super::trajectory::{FlightSample, FlightSegment, SampledFlight};
 use super::{ExportError, ExportOptions};
 use crate::base::clock;
 use slewplan_solver::model::scenario::Scenario;
@@ -90,6 +91,7 @@ fn block(
     let named = |name: &Option<String>| name.as_deref().map_or(UNKNOWN.to_owned(), plain);
     let what = match segment.kind {
         SegmentKind::Slew(from, to) => format!("Slew from {} to {}", plain(from), plain(to)),
+        SegmentKind::Wait(place) => format!("Waiting at rest at {}", plain(place)),
         SegmentKind::Rest(target) => format!("At rest at {}", plain(target)),
     };
     let frame = scenario.reference_frame().unwrap_or_default();

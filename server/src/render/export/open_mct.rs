@@ -2,16 +2,18 @@
 
 use super::ExportError;
 use super::calendar::{self, CalendarTime};
-use super::trajectory::{SegmentKind, pieces};
+use super::phases::{SegmentKind, phases};
 use serde::Serialize;
 use slewplan_solver::model::plan::Flight;
 use slewplan_solver::model::scenario::Scenario;
 
-/// Two groups; an activity's `type` is the name of its group.
+/// Groups of activities, whose `type` is the name of the group; waits are there where there are any.
 #[derive(Debug, Serialize)]
 struct OpenMctPlan {
     #[serde(rename = "Slews")]
     slews: Vec<Activity>,
+    #[serde(rename = "Waits", skip_serializing_if = "Vec::is_empty")]
+    waits: Vec<Activity>,
     #[serde(rename = "Targets")]
     targets: Vec<Activity>,
 }
@@ -45,19 +47,31 @@ pub(super) fn plan(scenario: &Scenario, flight: &Flight) -> Result<String, Expor
             text_color: "white",
         })
     };
-    let slews = pieces(flight).into_iter().filter_map(|(kind, begin, end)| {
-        let SegmentKind::Slew(from, to) = kind else {
-            return None;
-        };
-        let name = format!("{from} \u{2192} {to}");
-        Some(activity(name, (begin, end), "Slews", "#0b6e99"))
-    });
+    let (mut slews, mut waits) = (Vec::new(), Vec::new());
+    for (kind, begin, end) in phases(scenario, flight) {
+        match kind {
+            SegmentKind::Slew(from, to) => {
+                let name = format!("{from} \u{2192} {to}");
+                slews.push(activity(name, (begin, end), "Slews", "#0b6e99")?);
+            }
+            SegmentKind::Wait(place) => {
+                waits.push(activity(
+                    place.to_owned(),
+                    (begin, end),
+                    "Waits",
+                    "#5b6672",
+                )?);
+            }
+            SegmentKind::Rest(_) => {}
+        }
+    }
     let targets = flight.passages.iter().map(|passage| {
         let stay = (passage.time_s, passage.departure_s);
         activity(passage.target.clone(), stay, "Targets", "#a8480f")
     });
     let plan = OpenMctPlan {
-        slews: slews.collect::<Result<_, _>>()?,
+        slews,
+        waits,
         targets: targets.collect::<Result<_, _>>()?,
     };
     let text = serde_json::to_string_pretty(&plan).map_err(|_| ExportError::NotFinite)?;

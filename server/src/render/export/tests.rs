@@ -2,8 +2,9 @@
 
 mod messages;
 
+use super::phases::{SegmentKind, phases};
 use super::sampling::Sampling;
-use super::trajectory::{SampledFlight, SegmentKind};
+use super::trajectory::SampledFlight;
 use super::{ExportError, ExportOptions, Format, Spacing, write};
 use crate::documents;
 use slewplan_solver::checker::PropagatedMotion;
@@ -105,7 +106,63 @@ fn with_trajectory(spacing: Spacing, look: impl Fn(&SampledFlight<'_>)) {
         spacing,
         most: 10_000,
     };
-    look(&SampledFlight::of(&flight, &motion, sampling).unwrap());
+    look(&SampledFlight::of(&scenario, &flight, &motion, sampling).unwrap());
+}
+
+/// The flight with three seconds of rest before the visit and two after it.
+fn waiting_flight() -> Flight {
+    let mut flight = flight();
+    flight.total_time_s = 30.0;
+    flight.controls[2].duration_s = 10.0;
+    flight.controls[3].start_s = 20.0;
+    flight.controls[4].start_s = 25.0;
+    (flight.passages[0].time_s, flight.passages[0].departure_s) = (13.0, 18.0);
+    (flight.passages[1].time_s, flight.passages[1].departure_s) = (30.0, 30.0);
+    flight
+}
+
+#[test]
+fn waits_are_phases_where_there_is_a_clock() {
+    let flight = waiting_flight();
+    let (start, a, b) = ("start", "a<1>", "b");
+    let with_clock = scenario(r#""latest_end_s": 100,"#);
+    assert_eq!(
+        phases(&with_clock, &flight),
+        [
+            (SegmentKind::Slew(start, a), 0.0, 10.0),
+            (SegmentKind::Wait(a), 10.0, 13.0),
+            (SegmentKind::Rest(a), 13.0, 18.0),
+            (SegmentKind::Wait(a), 18.0, 20.0),
+            (SegmentKind::Slew(a, b), 20.0, 30.0)
+        ]
+    );
+    let without = phases(&labelled(), &flight);
+    assert_eq!(without[0], (SegmentKind::Slew(start, a), 0.0, 13.0));
+    let options = ExportOptions::new(10_000);
+    let table = write(Format::Csv, &with_clock, &flight, &options).unwrap();
+    let cells = |line: &str| {
+        line.rsplit(',')
+            .take(2)
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    let mut found: Vec<_> = table.lines().map(cells).collect();
+    found.dedup();
+    let expected = [
+        ["target", "phase"],
+        [a, "slew"],
+        [a, "wait"],
+        [a, "visit"],
+        [a, "wait"],
+        [b, "slew"],
+    ];
+    assert_eq!(found, expected);
+    let plain = write(Format::Csv, &labelled(), &flight, &options).unwrap();
+    assert!(!plain.contains("phase"));
+    let schedule = write(Format::OpenMct, &with_clock, &flight, &options).unwrap();
+    assert_eq!(schedule.matches(r#""type": "Waits""#).count(), 2);
+    let message = write(Format::AemKvn, &with_clock, &flight, &options).unwrap();
+    assert_eq!(message.matches("Waiting at rest at a<1>").count(), 2);
 }
 
 #[test]

@@ -1,10 +1,12 @@
-//! The flight as slews and rests, each with samples at its ends and at every switch.
+//! The flight as slews, waits and rests, each with samples at its ends and at every switch.
 
 use super::ExportError;
+use super::phases::{SegmentKind, phases};
 use super::sampling::{self, CLOSEST_S, Sampling};
 use nalgebra::Vector3;
 use slewplan_solver::checker::PropagatedMotion;
 use slewplan_solver::model::plan::{Flight, State};
+use slewplan_solver::model::scenario::Scenario;
 
 /// A sampled flight.
 #[derive(Debug)]
@@ -15,21 +17,12 @@ pub(super) struct SampledFlight<'a> {
     pub(super) wheels: usize,
 }
 
-/// One slew, or one rest at a target.
+/// One slew, one wait, or one rest at a target.
 #[derive(Debug)]
 pub(super) struct FlightSegment<'a> {
     pub(super) kind: SegmentKind<'a>,
     /// At least two, strictly increasing in time.
     pub(super) samples: Vec<FlightSample>,
-}
-
-/// The kind of a segment.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum SegmentKind<'a> {
-    /// From start or a target to a target or the end.
-    Slew(&'a str, &'a str),
-    /// Settle and dwell at a target.
-    Rest(&'a str),
 }
 
 /// The flight at one time.
@@ -45,13 +38,14 @@ pub(super) struct FlightSample {
 impl<'a> SampledFlight<'a> {
     /// Samples a motion.
     pub(super) fn of(
+        scenario: &Scenario,
         flight: &'a Flight,
         motion: &PropagatedMotion,
         sampling: Sampling,
     ) -> Result<Self, ExportError> {
         let mut segments = Vec::new();
         let mut left = sampling.most;
-        for (kind, begin, end) in pieces(flight) {
+        for (kind, begin, end) in phases(scenario, flight) {
             let knots = knots(flight, begin, end);
             let times = sampling::times(
                 motion,
@@ -80,25 +74,6 @@ impl<'a> SampledFlight<'a> {
         let segments = self.segments.iter().enumerate();
         segments.flat_map(|(index, segment)| segment.samples.iter().skip(usize::from(index > 0)))
     }
-}
-
-/// Slews and rests with begin and end, s; those of zero duration are left out.
-pub(super) fn pieces(flight: &Flight) -> Vec<(SegmentKind<'_>, f64, f64)> {
-    let mut pieces = Vec::new();
-    let (mut from, mut since) = ("start", 0.0);
-    for passage in &flight.passages {
-        let target = passage.target.as_str();
-        pieces.push((SegmentKind::Slew(from, target), since, passage.time_s));
-        pieces.push((
-            SegmentKind::Rest(target),
-            passage.time_s,
-            passage.departure_s,
-        ));
-        (from, since) = (target, passage.departure_s);
-    }
-    pieces.push((SegmentKind::Slew(from, "end"), since, flight.total_time_s));
-    pieces.retain(|(_, begin, end)| end - begin > CLOSEST_S);
-    pieces
 }
 
 /// Begin, switch times and end of a piece.

@@ -2,6 +2,7 @@
 
 use super::canvas::{Canvas, Ink, Pen, PlotArea, WARM};
 use super::panel::{self, Panel};
+use super::schedule;
 use super::written::{Record, WrittenPlan, WrittenState};
 use slewplan_solver::model::cone::Cone;
 use slewplan_solver::model::scenario::Scenario;
@@ -9,6 +10,8 @@ use slewplan_solver::model::spacecraft::Spacecraft;
 
 /// Greatest number of cones whose clearance is drawn: more names than these would overlap.
 const MAX_CONES_DRAWN: usize = 4;
+/// Height of the windows behind the phases, which are lower.
+const WINDOW_HEIGHT: f64 = 18.0;
 
 /// Panels of body rates, wheel speeds and wheel torques, in this order; a scenario adds the limits, and
 /// a panel of the clearance of its cones where it has any.
@@ -124,8 +127,22 @@ pub(super) fn height(panels: &[Panel]) -> f64 {
     panels.len() as f64 * (panel::HEIGHT + panel::GAP)
 }
 
-/// Slews and rests, with the targets numbered in visiting order.
-pub(super) fn strip(canvas: &mut Canvas, frame: PlotArea, plan: &WrittenPlan, height: f64) {
+/// Slews, waits and rests, with the targets numbered in visiting order; a scenario adds the windows.
+pub(super) fn strip(
+    canvas: &mut Canvas,
+    frame: PlotArea,
+    plan: &WrittenPlan,
+    scenario: Option<&Scenario>,
+) {
+    let height = frame.height;
+    if let Some(scenario) = scenario {
+        let behind = PlotArea {
+            top: frame.top + height - WINDOW_HEIGHT,
+            height: WINDOW_HEIGHT,
+            ..frame
+        };
+        schedule::windows(canvas, behind, plan, scenario);
+    }
     let times = frame.times(plan.total_time_s);
     let bar = |begin: f64, end: f64| PlotArea {
         left: times.at(begin),
@@ -140,6 +157,12 @@ pub(super) fn strip(canvas: &mut Canvas, frame: PlotArea, plan: &WrittenPlan, he
             0.0,
         );
     }
+    let row = PlotArea {
+        top: frame.top + height - 12.0,
+        height: 12.0,
+        ..frame
+    };
+    schedule::waits(canvas, row, plan);
     let mut last = f64::NEG_INFINITY;
     for (index, passage) in plan.passages.iter().enumerate() {
         canvas.rectangle(bar(passage.time_s, passage.departure_s), WARM, 0.0);

@@ -14,6 +14,13 @@ pub(crate) struct WrittenPlan {
     pub(super) passages: Vec<WrittenPassage>,
     pub(super) trajectory: WrittenTrajectory,
     pub(super) verification: Option<WrittenVerification>,
+    /// Sum of the values of the targets that are visited, and its upper bound.
+    pub(super) value: Option<f64>,
+    pub(super) value_bound: Option<f64>,
+    #[serde(default)]
+    pub(super) skipped: Vec<WrittenSkipped>,
+    #[serde(default)]
+    pub(super) waits: Vec<WrittenWait>,
     margins: Option<WrittenMargins>,
 }
 
@@ -22,6 +29,20 @@ struct WrittenMargins {
     /// Plans of other origin may lack it.
     #[serde(default)]
     keep_out_intrusions: Vec<WrittenIntrusion>,
+}
+
+/// A target that is left out.
+#[derive(Debug, Deserialize)]
+pub(super) struct WrittenSkipped {
+    pub(super) target: String,
+    pub(super) reason: String,
+}
+
+/// A stay at rest outside a visit.
+#[derive(Debug, Deserialize)]
+pub(super) struct WrittenWait {
+    pub(super) from_s: f64,
+    pub(super) to_s: f64,
 }
 
 /// A stay of a boresight on the wrong side of a cone.
@@ -153,6 +174,12 @@ impl WrittenPlan {
     pub(super) fn intrusions(&self) -> Vec<(f64, f64)> {
         let margins = self.margins.as_ref();
         margins.map_or_else(Vec::new, |margins| spans(&margins.keep_out_intrusions))
+    }
+
+    /// What the visits are worth, where targets have values.
+    pub(super) fn value_words(&self) -> Option<String> {
+        let (value, bound) = (self.value?, self.value_bound?);
+        (bound > 0.0).then(|| format!("value {value} of at most {bound}"))
     }
 
     /// The index of the first state at a time, s, or after it.

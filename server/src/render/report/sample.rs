@@ -3,9 +3,37 @@
 use nalgebra::Vector3;
 use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::plan::{
-    Alternative, Control, Flight, Leg, LowerBoundKind, Margins, Milestone, NlpSolves, Optimality,
-    Passage, Plan, Rolls, SearchWork, State, Statistics, Verification,
+    Alternative, Control, Flight, InclusionCost, Leg, LowerBoundKind, Margins, Milestone,
+    NlpSolves, Objective, Optimality, Passage, Plan, Rolls, Schedule, SearchWork, SkipReason,
+    SkippedTarget, State, Statistics, Verification, Wait,
 };
+
+/// What the plan would say of a scenario with values, in which it leaves two targets out.
+pub(crate) fn schedule() -> Schedule {
+    let skipped = |target: &str, reason, inclusion| SkippedTarget {
+        target: target.into(),
+        reason,
+        inclusion,
+    };
+    let cost = InclusionCost {
+        value_change: -1.5,
+        time_change_s: 2.0,
+    };
+    Schedule {
+        objective: Objective::ValueThenTime,
+        value: 3.0,
+        value_bound: 4.5,
+        skipped: vec![
+            skipped("c", SkipReason::ValueTooSmall, Some(cost)),
+            skipped("d", SkipReason::NotTried, None),
+        ],
+        waits: vec![Wait {
+            target: "a".into(),
+            from_s: 10.0,
+            to_s: 12.0,
+        }],
+    }
+}
 
 /// Two targets, 30 s, three wheels; `b` has 5 s of dwell.
 pub(crate) fn plan() -> Plan {
@@ -30,6 +58,7 @@ pub(crate) fn plan() -> Plan {
             passages: vec![None, Some(-12.5)],
             end: None,
         },
+        schedule: None,
         states: [(0.0, 0.0), (10.0, 0.5), (20.0, 0.25), (30.0, 0.0)]
             .map(state)
             .into(),

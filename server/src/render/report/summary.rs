@@ -2,6 +2,7 @@
 
 use super::blocks::{count, line, margins, verification};
 use super::numbers::percent;
+use super::schedule;
 use super::table::aligned;
 use crate::documents::plan::status;
 use slewplan_solver::model::plan::{Leg, LowerBoundKind, Passage, Plan};
@@ -14,11 +15,16 @@ pub(super) fn title(name: &str, plan: &Plan) -> String {
     } else {
         ""
     };
+    let (visited, schedule) = (plan.flight.passages.len(), plan.schedule.as_ref());
+    let targets = match schedule.map_or(0, |it| it.skipped.len()) {
+        0 => count(visited, "target"),
+        skipped => format!("{visited} of {}", count(visited + skipped, "target")),
+    };
     format!(
-        "{name}: {}{violated}, {:.3} s for {}\n\n",
+        "{name}: {}{violated}{}, {:.3} s for {targets}\n\n",
         status(plan.optimality),
-        plan.total_time_s,
-        count(plan.flight.passages.len(), "target")
+        schedule.map_or_else(String::new, schedule::in_title),
+        plan.total_time_s
     )
 }
 
@@ -30,8 +36,11 @@ pub(super) fn plan(plan: &Plan, targets: &[Target]) -> String {
     text += &line("total", format_args!("{:.3} s", plan.total_time_s));
     text += &bound(plan);
     text += &alternatives(plan);
-    text += &rest_to_rest(plan);
-    text += &eigenaxis(plan);
+    match &plan.schedule {
+        Some(schedule) => text += &schedule::lines(schedule),
+        // With a clock other slews would not end the same order sooner.
+        None => text += &(rest_to_rest(plan) + &eigenaxis(plan)),
+    }
     text += &verification(&plan.verification, &plan.margins);
     text += &margins(&plan.margins);
     text += &work(plan);
@@ -53,6 +62,11 @@ fn legs(plan: &Plan, targets: &[Target]) -> String {
         "arrival [s]",
         "duration [s]",
     ];
+    let waits: Vec<_> = plan.legs.iter().map(|leg| waited(leg, plan)).collect();
+    let waiting = waits.iter().any(|time| *time > 0.0);
+    if waiting {
+        head.push("wait [s]");
+    }
     if rests {
         head.extend(["settle [s]", "dwell [s]"]);
     }
@@ -68,6 +82,9 @@ fn legs(plan: &Plan, targets: &[Target]) -> String {
         let mut row = vec![(index + 1).to_string(), leg.from.clone(), leg.to.clone()];
         let times = [leg.start_s, leg.start_s + leg.duration_s, leg.duration_s];
         row.extend(times.map(|time| format!("{time:.3}")));
+        if waiting {
+            row.push(rest(waits[index]));
+        }
         if rests {
             row.extend(stay.map(rest));
         }
@@ -91,6 +108,13 @@ fn stay(leg: &Leg, plan: &Plan, targets: &[Target]) -> [f64; 2] {
     let target = targets.iter().find(|target| target.id == leg.to);
     let settle = target.map_or(0.0, |target| target.settle.min(stay));
     [settle, stay - settle]
+}
+
+/// Time of waits in the attitude at the end of a leg, s.
+fn waited(leg: &Leg, plan: &Plan) -> f64 {
+    let waits = plan.schedule.iter().flat_map(|it| &it.waits);
+    let here = waits.filter(|wait| wait.target == leg.to);
+    here.map(|wait| wait.to_s - wait.from_s).sum()
 }
 
 /// The roll at the end of a leg, degrees, where a boresight is pointed there.
@@ -274,6 +298,8 @@ mod tests {
             rate: [RateCondition::Fixed(0.0); 3],
             settle: 2.0,
             dwell: 3.0,
+            windows: None,
+            value: None,
         };
         let text = legs(&plan, std::slice::from_ref(&target));
         let cells: Vec<Vec<&str>> = text
@@ -286,6 +312,24 @@ mod tests {
         target.settle = 0.0;
         plan.flight.passages[1].departure_s = plan.flight.passages[1].time_s;
         assert!(!legs(&plan, &[target]).contains("dwell"));
+    }
+
+    #[test]
+    fn a_schedule_has_its_value_and_what_is_left_out() {
+        let mut plan = sample::plan();
+        plan.schedule = Some(sample::schedule());
+        let text = title("x", &plan) + &super::plan(&plan, &[]);
+        for part in [
+            "x: optimal, value 3, 30.000 s for 2 of 4 targets",
+            "3, at most 4.5, gap 33.3333 %",
+            "c: value_too_small; with it the value changes by -1.5, the time by +2.000 s",
+            "d: not_tried",
+            "2.000 s in 1 wait",
+            "wait [s]",
+        ] {
+            assert!(text.contains(part), "{part:?} is not in\n{text}");
+        }
+        assert!(!text.contains("same order"), "{text}");
     }
 
     #[test]

@@ -62,6 +62,8 @@ fn end(job: &JobRow, begun_us: Option<i64>) -> JobEnd {
         total: None,
         incumbent_s: None,
         lower_bound_s: None,
+        value: None,
+        value_bound: None,
     };
     JobEnd {
         lease: job.clone(),

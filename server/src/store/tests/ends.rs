@@ -1,16 +1,11 @@
 //! Plans, bounds and codes at the end of a job.
 
 use super::{
-    ID, change, ended, improve, json, lease, on_a_store, plan, result, sql, submitted, value,
+    ID, change, ended, improve, job, json, lease, on_a_store, plan, result, sql, submitted, value,
 };
 use crate::store::{
     EndCode, Ended, JobRow, JobState, OtherProcesses, PackedPlan, ProgressRow, Store,
 };
-
-async fn job(store: &Store) -> JobRow {
-    let found = store.job(ID).await.expect("read");
-    found.expect("the job is there")
-}
 
 const REASONS: &str = r#"{"status":"failed"}"#;
 
@@ -33,6 +28,8 @@ async fn bounded(store: &Store, lease: &JobRow, incumbent_s: f64, lower_bound_s:
         total: None,
         incumbent_s: Some(incumbent_s),
         lower_bound_s: Some(lower_bound_s),
+        value: None,
+        value_bound: None,
     };
     let written = store.progress(lease, &progress, None, 3).await;
     assert!(written.expect("tried"));

@@ -20,7 +20,7 @@ const UNTYPED: [&str; 2] = ["42P08", "42P18"];
 
 /// What a macro of the sources stands for.
 struct Expansion<'a> {
-    parameter: &'a str,
+    parameters: Vec<&'a str>,
     body: String,
 }
 
@@ -82,11 +82,13 @@ fn literal(source: &str) -> (String, &str) {
 fn macros(sources: &str) -> Macros<'_> {
     let definitions = sources.split("macro_rules! ").skip(1).map(|text| {
         let (name, rest) = text.split_once(" {").expect("a name");
-        let (parameter, rest) = rest.split_once("=>").expect("a parameter");
+        let (parameters, rest) = rest.split_once("=>").expect("parameters");
         let (body, _) = rest.split_once("};").expect("a body");
-        let parameter = parameter.trim().trim_matches(['(', ')']);
+        let parameters = parameters.trim().trim_matches(['(', ')']).split(", ");
         let expansion = Expansion {
-            parameter: parameter.split(':').next().unwrap_or_default(),
+            parameters: parameters
+                .filter_map(|p| Some(p.split_once(':')?.0))
+                .collect(),
             body: body.to_owned(),
         };
         (name, expansion)
@@ -106,11 +108,36 @@ fn column_lists(sources: &str) -> impl Iterator<Item = (&str, Expansion<'_>)> {
             .filter_map(|line| line.split_once(": ")?.0.split_whitespace().last())
             .collect();
         let expansion = Expansion {
-            parameter: "",
+            parameters: Vec::new(),
             body: format!("{:?}", columns.join(", ")),
         };
         (name, expansion)
     })
+}
+
+/// The arguments of a macro as they are written, and what follows the parenthesis that closes them.
+fn arguments(source: &str) -> (Vec<&str>, &str) {
+    let (mut given, mut begin, mut rest, mut depth) = (Vec::new(), source, source, 0);
+    while let Some(next) = rest.chars().next() {
+        let ends = depth == 0 && matches!(next, ',' | ')');
+        if ends {
+            let argument = begin[..begin.len() - rest.len()].trim();
+            given.extend((!argument.is_empty()).then_some(argument));
+        }
+        if next == '"' {
+            rest = literal(rest).1;
+            continue;
+        }
+        rest = &rest[next.len_utf8()..];
+        match next {
+            ')' if ends => break,
+            ',' if ends => begin = rest,
+            '(' => depth += 1,
+            ')' => depth -= 1,
+            _ => {}
+        }
+    }
+    (given, rest)
 }
 
 /// All literals of an expression in a row, macros expanded, until its parenthesis is closed.
@@ -124,18 +151,14 @@ fn joined(source: &str, macros: &Macros) -> String {
         if next == '"' {
             let (part, after) = literal(rest);
             (text, rest) = (text + &part, after);
-        } else if let Some(Expansion { parameter, body }) = macros.get(name) {
-            let argument = rest[name.len() + "!(".len()..].trim_start();
-            let end = if parameter.is_empty() {
-                text += &joined(body, macros);
-                0
-            } else {
-                let end = argument.len() - literal(argument).1.len();
-                text += &joined(&body.replace(*parameter, &argument[..end]), macros);
-                end
+        } else if let Some(Expansion { parameters, body }) = macros.get(name) {
+            let (given, after) = arguments(&rest[name.len() + "!(".len()..]);
+            assert_eq!(given.len(), parameters.len(), "{name}");
+            let replaced = |body: String, (parameter, argument): (&&str, &&str)| {
+                body.replace(*parameter, argument)
             };
-            let after = argument[end..].trim_start();
-            rest = after.strip_prefix(')').expect("one argument");
+            let body = parameters.iter().zip(&given).fold(body.clone(), replaced);
+            (text, rest) = (text + &joined(&body, macros), after);
         } else {
             depth += i32::from(next == '(') - i32::from(next == ')');
             if depth < 0 {

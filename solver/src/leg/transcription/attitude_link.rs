@@ -15,7 +15,7 @@ use super::rows::add_attitude_block;
 use super::{Transcription, quaternion_of};
 use crate::leg::kinematics::{TurnDerivatives, TurnInputs};
 use crate::math::quaternion::{Quat, conjugate, dot4, imaginary, product, quat, rotate_back};
-use crate::nlp::{Link, LinkModel};
+use crate::nlp::{Chain, Link, LinkModel};
 use nalgebra::{Matrix3, Vector3};
 
 /// The terms of one link's derivatives.
@@ -187,7 +187,7 @@ impl Transcription {
     /// Derivatives of the gap by wheel momenta, their changes and the length: `a = -tau b`,
     /// `c = -tau e` with the wheels' rates `b = offset + gain h` and `e = b + gain m`.
     fn write_wheel_slopes(&self, terms: &LinkTerms<'_>, out: &mut LinkModel) {
-        let (wheels, vars) = (self.wheels(), out.vars);
+        let (controls, vars) = (self.state_dim(), out.vars);
         let [by_begin, by_end, _] = terms.slopes;
         let by_both = by_begin + by_end;
         for (i, gain) in self.rate_gain.iter().enumerate() {
@@ -195,18 +195,19 @@ impl Transcription {
             let by_change = by_end * gain * -terms.tau;
             for row in 0..3 {
                 out.link_jacobian[row * vars + 3 + i] = by_start[row];
-                out.link_jacobian[row * vars + 3 + wheels + i] = by_change[row];
+                out.link_jacobian[row * vars + controls + i] = by_change[row];
             }
         }
         let by_length = by_begin * terms.begin + by_end * terms.end;
         for row in 0..3 {
-            out.link_jacobian[row * vars + 3 + 2 * wheels] = -by_length[row];
+            out.link_jacobian[row * vars + controls + self.wheels()] = -by_length[row];
         }
     }
 
     /// Second derivatives by the same variables and attitude steps.
     fn add_wheel_curvature(&self, terms: &LinkTerms<'_>, out: &mut LinkModel) {
-        let (wheels, vars, tau) = (self.wheels(), out.vars, terms.tau);
+        let (controls, vars, tau) = (self.state_dim(), out.vars, terms.tau);
+        let length = controls + self.wheels();
         let [aa, ac, cc] = [(0, 0), (0, 1), (1, 1)].map(|(i, j)| terms.block(i, j));
         let (with_end, [mixed_begin, mixed_end, _]) = (ac.transpose() + cc, terms.mixed);
         let (both, mixed_both) = (aa + ac + with_end, mixed_begin + mixed_end);
@@ -218,15 +219,15 @@ impl Transcription {
             along_both * tau - by_begin - by_end,
             along_end * tau - by_end,
         );
-        let length_row = (3 + 2 * wheels) * vars;
+        let length_row = length * vars;
         for (i, gain) in self.rate_gain.iter().enumerate() {
-            let (h_row, m_row) = ((3 + i) * vars, (3 + wheels + i) * vars);
+            let (h_row, m_row) = ((3 + i) * vars, (controls + i) * vars);
             let weighted = gain * (tau * tau);
             let (hh, mh, mm) = (both * weighted, with_end.tr_mul(&weighted), cc * weighted);
             for (j, other) in self.rate_gain.iter().enumerate() {
                 if j <= i {
                     out.hessian[h_row + 3 + j] += hh.dot(other);
-                    out.hessian[m_row + 3 + wheels + j] += mm.dot(other);
+                    out.hessian[m_row + controls + j] += mm.dot(other);
                 }
                 out.hessian[m_row + 3 + j] += mh.dot(other);
             }
@@ -236,14 +237,14 @@ impl Transcription {
                 out.hessian[m_row + axis] += m_mixed[axis];
             }
             out.hessian[length_row + 3 + i] += length_h.dot(gain);
-            out.hessian[length_row + 3 + wheels + i] += length_m.dot(gain);
+            out.hessian[length_row + controls + i] += length_m.dot(gain);
         }
         let mixed = mixed_begin * terms.begin + mixed_end * terms.end;
         for axis in 0..3 {
             out.hessian[length_row + axis] -= mixed[axis];
         }
         let along = terms.begin.dot(&(along_both - along_end)) + terms.end.dot(&along_end);
-        out.hessian[length_row + 3 + 2 * wheels] += along;
+        out.hessian[length_row + length] += along;
     }
 }
 

@@ -11,7 +11,7 @@
 use super::Transcription;
 use super::attitude_link::LinkTerms;
 use super::rows::LimitRow;
-use crate::nlp::{Link, LinkModel, MAX_CONTROLS, MAX_STATES};
+use crate::nlp::{Chain, Link, LinkModel, MAX_CONTROLS, MAX_STATES};
 use nalgebra::{Matrix3, Vector3};
 
 /// Rate, in units of the limit of its norm, that rounds off the norm's corner at zero.
@@ -132,7 +132,7 @@ impl Transcription {
         if z.is_empty() {
             return;
         }
-        let (vars, length) = (out.vars, 3 + 2 * self.wheels());
+        let (vars, length) = (out.vars, self.state_dim() + self.wheels());
         let slopes = self.middle_slopes(terms);
         let reserves = self.reserves.at(node);
         for (i, (middle, z)) in self.middle_rows.iter().zip(z).enumerate() {
@@ -154,7 +154,7 @@ impl Transcription {
     }
 
     fn middle_slopes(&self, terms: &LinkTerms<'_>) -> Slopes {
-        let (wheels, tau) = (self.wheels(), terms.tau);
+        let (controls, tau) = (self.state_dim(), terms.tau);
         let [by_begin, by_end, by_momentum] = terms.middle;
         let mut slopes = [Vector3::zeros(); MAX_STATES + MAX_CONTROLS];
         let turned = by_momentum * terms.momentum.cross_matrix() * (tau * self.scales.angle);
@@ -164,9 +164,9 @@ impl Transcription {
         let (both, end) = ((by_begin + by_end) * -tau, by_end * -tau);
         for (i, gain) in self.rate_gain.iter().enumerate() {
             slopes[3 + i] = both * gain;
-            slopes[3 + wheels + i] = end * gain;
+            slopes[controls + i] = end * gain;
         }
-        slopes[3 + 2 * wheels] =
+        slopes[controls + self.wheels()] =
             by_momentum * terms.momentum - by_begin * terms.begin - by_end * terms.end;
         slopes
     }

@@ -2,10 +2,11 @@
 
 use super::limits::{Limits, exceeds};
 use super::pointing::Surroundings;
+use super::windows::Calendar;
 use super::{RateCondition, Target};
 use crate::model::findings::Findings;
 use crate::model::problem::Code;
-use crate::model::spec::{MAX_TARGETS, ScenarioSpec, TargetSpec};
+use crate::model::spec::{MAX_TARGETS, MAX_VALUE, ScenarioSpec, TargetSpec};
 use std::collections::HashSet;
 
 /// Reserved names of the ends of the tour.
@@ -14,7 +15,7 @@ const RESERVED: [&str; 2] = ["start", "end"];
 pub(super) fn read_all(
     spec: &ScenarioSpec,
     surroundings: Surroundings<'_>,
-    limits: &Limits,
+    (limits, calendar): (&Limits, Calendar),
     findings: &mut Findings,
 ) -> Option<Vec<Target>> {
     if spec.targets.is_empty() && spec.end.is_none() {
@@ -44,6 +45,11 @@ pub(super) fn read_all(
             let rate = read_rate(target, &pointer, limits, findings);
             let dwell = read_time(target.dwell_s, &format!("{pointer}/dwell_s"), findings);
             let settle = read_time(target.settle_s, &format!("{pointer}/settle_s"), findings);
+            let windows = target.windows.as_ref();
+            let windows =
+                windows.map(|listed| calendar.windows(listed, target, &pointer, findings));
+            let value = target.value;
+            let value = value.map(|value| read_value(value, &format!("{pointer}/value"), findings));
             let orientation = orientation?;
             Some(Target {
                 id: id_valid.then(|| target.id.clone())?,
@@ -53,6 +59,14 @@ pub(super) fn read_all(
                 rate: rate?,
                 settle: settle?,
                 dwell: dwell?,
+                windows: match windows {
+                    Some(windows) => Some(windows?),
+                    None => None,
+                },
+                value: match value {
+                    Some(value) => Some(value?),
+                    None => None,
+                },
             })
         })
         .collect();
@@ -101,6 +115,21 @@ fn read_time(time: f64, pointer: &str, findings: &mut Findings) -> Option<f64> {
         "give a time of at least 0 s",
     );
     None
+}
+
+/// A value that a target has.
+fn read_value(value: f64, pointer: &str, findings: &mut Findings) -> Option<f64> {
+    let value = findings.positive(pointer, value)?;
+    if value > MAX_VALUE {
+        findings.refuse(
+            pointer,
+            Code::OutOfRange,
+            format!("the value is {value}, it may be {MAX_VALUE:e} at most"),
+            "scale all values down: only their ratios matter",
+        );
+        return None;
+    }
+    Some(value)
 }
 
 fn read_rate(

@@ -4,6 +4,7 @@ mod pointing;
 mod remarks;
 mod sky;
 mod unit_slips;
+mod windows;
 
 use super::reference::experiment_a;
 use super::*;

@@ -4,9 +4,9 @@ use super::torques::{MIN_PIECE_SHARE, torques};
 use super::tours::Tours;
 use crate::leg::multiphase::LegSolution;
 use crate::model::attitude::Attitude;
-use crate::model::plan::{Control, Flight, Leg, Passage};
+use crate::model::plan::{Control, Flight, Leg, Passage, Wait};
+use crate::model::scenario::Target;
 use crate::tour::order::Place;
-use std::sync::Arc;
 
 /// A flight under construction.
 struct Assembly<'a> {
@@ -16,15 +16,22 @@ struct Assembly<'a> {
     controls: Vec<Control>,
     passages: Vec<Passage>,
     legs: Vec<Leg>,
+    waits: Vec<Wait>,
 }
 
-/// Assembles the solved segments of a route, with settle and dwell times.
-pub(super) fn assemble(
-    tours: &Tours<'_>,
-    route: &[Place],
-    segments: &[Arc<LegSolution>],
-) -> (Flight, Vec<Leg>) {
-    let total: f64 = segments.iter().map(|s| s.profile.duration()).sum();
+/// A part of a flight: the motion through places, after a wait in the first of them.
+pub(super) struct Piece<'a> {
+    pub(super) places: &'a [Place],
+    pub(super) delay: f64,
+    pub(super) motion: &'a LegSolution,
+}
+
+/// Assembles the pieces of a flight, with settle and dwell times, and waits at rest for windows to open.
+pub(super) fn assemble(tours: &Tours<'_>, pieces: &[Piece<'_>]) -> (Flight, Vec<Leg>, Vec<Wait>) {
+    let total: f64 = pieces
+        .iter()
+        .map(|piece| piece.motion.profile.duration())
+        .sum();
     let mut assembly = Assembly {
         tours,
         clock: 0.0,
@@ -32,24 +39,32 @@ pub(super) fn assemble(
         controls: Vec::new(),
         passages: Vec::new(),
         legs: Vec::new(),
+        waits: Vec::new(),
     };
-    for (places, solution) in tours.places.split(route).iter().zip(segments) {
-        let mut begin = 0;
-        for (pair, intervals) in places.windows(2).zip(&solution.intervals) {
-            assembly.add_leg(pair[0], pair[1], solution, begin..begin + intervals);
-            begin += intervals;
-            assembly.visit(pair[1]);
-        }
+    for piece in pieces {
+        assembly.add_piece(piece);
     }
     let flight = Flight {
         total_time_s: assembly.clock,
         passages: assembly.passages,
         controls: assembly.controls,
     };
-    (flight, assembly.legs)
+    (flight, assembly.legs, assembly.waits)
 }
 
 impl Assembly<'_> {
+    fn add_piece(&mut self, piece: &Piece<'_>) {
+        if let Some(first) = piece.places.first() {
+            self.wait(&self.tours.places.name(*first), self.clock + piece.delay);
+        }
+        let mut begin = 0;
+        for (pair, intervals) in piece.places.windows(2).zip(&piece.motion.intervals) {
+            self.add_leg(pair[0], pair[1], piece.motion, begin..begin + intervals);
+            begin += intervals;
+            self.visit(pair[1]);
+        }
+    }
+
     fn add_leg(
         &mut self,
         from: Place,
@@ -79,6 +94,7 @@ impl Assembly<'_> {
     fn visit(&mut self, place: Place) {
         let Place::Target(index) = place else { return };
         let target = &self.tours.places.scenario.targets()[index];
+        self.wait_for_window(target);
         let arrival = self.clock;
         let service = self.tours.places.service_time(place);
         if service > 0.0 {
@@ -90,6 +106,30 @@ impl Assembly<'_> {
             time_s: arrival,
             departure_s: self.clock,
         });
+    }
+
+    /// Stays at rest until a window opens.
+    fn wait_for_window(&mut self, target: &Target) {
+        if target.rests() {
+            let begin = target.begin_after(self.clock).unwrap_or(self.clock);
+            self.wait(&target.id, begin);
+        }
+    }
+
+    /// Stays at rest in a place until a time.
+    fn wait(&mut self, place: &str, until: f64) {
+        let from_s = self.clock;
+        if until > from_s {
+            let wheels = self.tours.places.dynamics.wheel_count();
+            self.push(until - from_s, std::iter::repeat_n(0.0, wheels));
+            // The sum may differ from it by rounding.
+            self.clock = until;
+            self.waits.push(Wait {
+                target: place.to_owned(),
+                from_s,
+                to_s: until,
+            });
+        }
     }
 
     fn push(&mut self, duration: f64, torques: impl Iterator<Item = f64>) {

@@ -311,6 +311,8 @@ impl CertificateVerifier<'_> {
             total: Some(self.total.load(Ordering::Relaxed)),
             incumbent_s: None,
             lower_bound_s: None,
+            value: None,
+            value_bound: None,
         });
     }
 }

@@ -1,6 +1,7 @@
 //! Solves a scenario for a prescribed order of its targets.
 
 use super::additive_tours::LegTimes;
+use super::clock::not_planned;
 use super::legs::LegSolver;
 use super::places::Places;
 use super::plan_builder::PlanBuilder;
@@ -71,6 +72,9 @@ fn solve_admitted(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: R
     let problems = feasibility_problems(scenario);
     if !problems.is_empty() {
         return Outcome::Infeasible(problems);
+    }
+    if scenario.has_clock() {
+        return Outcome::Failed(vec![not_planned()]);
     }
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);

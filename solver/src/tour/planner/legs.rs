@@ -97,6 +97,8 @@ impl<'a> LegSolver<'a> {
             total,
             incumbent_s,
             lower_bound_s,
+            value: None,
+            value_bound: None,
         });
     }
 

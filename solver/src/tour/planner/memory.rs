@@ -13,6 +13,7 @@ use crate::model::dynamics::{Authority, Dynamics};
 use crate::model::scenario::{RateCondition, Scenario, Target};
 use crate::tour::order::completion::MAX_EXACT_TARGETS;
 use crate::tour::order::lagrangian::{LagrangianPaths, MAX_LAGRANGIAN_TARGETS};
+use crate::tour::schedule::{LABEL_BYTES, MAX_LABELS};
 use std::f64::consts::FRAC_PI_2;
 
 /// Memory of the smallest solve with its plan, bytes.
@@ -56,7 +57,7 @@ const MAX_SEGMENT_BYTES: u64 = 40 << 20;
 #[must_use]
 pub fn memory_estimate(scenario: &Scenario) -> u64 {
     let size = Size::of(scenario);
-    BASE_BYTES + size.legs() + size.programs() + size.subsets() + size.searched()
+    BASE_BYTES + size.legs() + size.programs() + size.subsets() + size.searched() + size.labels()
 }
 
 /// What the memory depends on.
@@ -68,6 +69,8 @@ struct Size {
     /// Intervals of a leg of mean length.
     intervals: u64,
     time_limit_s: Option<f64>,
+    /// Whether windows, values or a latest end are searched with labels.
+    has_clock: bool,
 }
 
 impl Size {
@@ -90,6 +93,7 @@ impl Size {
             wheels: wheels as u64,
             intervals: intervals.max(MEASURED_INTERVALS),
             time_limit_s: scenario.options().time_limit_s,
+            has_clock: scenario.has_clock(),
         }
     }
 
@@ -136,6 +140,15 @@ impl Size {
             0
         };
         (self.targets << self.targets) * 8 * tables * 17 / 16 + lagrangian
+    }
+
+    /// Labels of one run, of few targets for a few times of every subset and last target.
+    fn labels(&self) -> u64 {
+        if !self.has_clock {
+            return 0;
+        }
+        let few = u32::try_from(self.targets).unwrap_or(u32::MAX).min(32);
+        MAX_LABELS.min((2 * self.targets) << few) * LABEL_BYTES
     }
 
     /// Open nodes and solved segments.

@@ -45,6 +45,8 @@ pub(super) struct Places<'a> {
     /// The rolls that limits and cones leave at the targets and the end, where an axis is pointed.
     rolls: Vec<Option<RollArcs>>,
     end_rolls: Option<RollArcs>,
+    /// The targets in one attitude each at full rest, where they are planned so.
+    stops: Option<Vec<Waypoint>>,
 }
 
 /// Start, all targets, and the end of a scenario, where there is one.
@@ -85,7 +87,23 @@ impl<'a> Places<'a> {
             with_cones: dynamics.with_cones(forbidden_always(scenario.cones())),
             dynamics,
             scenario,
+            stops: None,
         }
+    }
+
+    /// The places of a scenario with every target at full rest and, where its roll is free, in that of its
+    /// attitudes which is nearest to the start's: nothing is free at targets, and no legs couple.
+    pub(super) fn stopping(scenario: &'a Scenario) -> Self {
+        let mut places = Self::of(scenario);
+        let targets = (0..scenario.targets().len()).map(Place::Target);
+        let stops = targets.map(|target| {
+            let nearest = places
+                .waypoint(target)
+                .rolled_towards(&scenario.start().attitude);
+            places.stopped(&nearest.pinned())
+        });
+        places.stops = Some(stops.collect());
+        places
     }
 
     /// Start, all targets, and the end where there is one.
@@ -131,9 +149,7 @@ impl<'a> Places<'a> {
     /// Settle and dwell time at a place, s.
     pub(super) fn service_time(&self, place: Place) -> f64 {
         match place {
-            Place::Target(i) => {
-                self.scenario.targets()[i].settle + self.scenario.targets()[i].dwell
-            }
+            Place::Target(i) => self.scenario.targets()[i].service(),
             Place::Start | Place::End => 0.0,
         }
     }
@@ -148,7 +164,10 @@ impl<'a> Places<'a> {
     pub(super) fn attitude(&self, place: Place) -> Attitude {
         match place {
             Place::Start => self.scenario.start().attitude,
-            Place::Target(i) => self.scenario.targets()[i].attitude,
+            Place::Target(i) => match &self.stops {
+                Some(stops) => stops[i].attitude,
+                None => self.scenario.targets()[i].attitude,
+            },
             Place::End => self.end().attitude,
         }
     }
@@ -157,7 +176,10 @@ impl<'a> Places<'a> {
     fn roll(&self, place: Place) -> Option<&RollArcs> {
         match place {
             Place::Start => None,
-            Place::Target(i) => self.rolls[i].as_ref(),
+            Place::Target(i) => match &self.stops {
+                Some(stops) => stops[i].roll.as_ref(),
+                None => self.rolls[i].as_ref(),
+            },
             Place::End => self.end_rolls.as_ref(),
         }
     }
@@ -204,6 +226,9 @@ impl<'a> Places<'a> {
                 }
             }
             Place::Target(i) => {
+                if let Some(stops) = &self.stops {
+                    return stops[i].clone();
+                }
                 let target = &self.scenario.targets()[i];
                 Waypoint {
                     attitude: target.attitude,

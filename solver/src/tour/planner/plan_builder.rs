@@ -2,17 +2,19 @@
 //! compared with the certified bounds.
 
 use super::Run;
-use super::assemble::assemble;
+use super::assemble::{Piece, assemble};
+use super::clock::SolvedChain;
 use super::guesses::constructed;
 use super::history::{History, search_work};
+use super::scheduled::ClockFacts;
 use super::tables::SolvedTable;
 use super::tours::Tours;
 use super::unsolved::SLEW_HINT;
-use crate::checker;
+use crate::checker::{CheckReport, verify_with_claims};
 use crate::leg::multiphase::LegSolution;
 use crate::model::plan::{
     Alternative, Flight, Leg, LowerBoundKind, NlpSolves, Optimality, Outcome, Plan, Rolls,
-    Statistics,
+    Statistics, Wait,
 };
 use crate::model::problem::{Code, Problem};
 use crate::run::contradiction::{Contradiction, refutes};
@@ -45,6 +47,8 @@ pub(super) struct PlanBuilder<'a> {
     /// The rest-to-rest legs of the final order.
     rest: Option<SolvedTable>,
     history: History,
+    /// What is known of the present order, where the scenario has a clock.
+    clock: Mutex<Option<ClockFacts>>,
 }
 
 /// A flight that has passed its verification.
@@ -52,7 +56,8 @@ pub(super) struct PlanBuilder<'a> {
 struct VerifiedFlight {
     flight: Flight,
     legs: Vec<Leg>,
-    report: checker::CheckReport,
+    waits: Vec<Wait>,
+    report: CheckReport,
 }
 
 impl<'a> PlanBuilder<'a> {
@@ -67,7 +72,19 @@ impl<'a> PlanBuilder<'a> {
             constructed: None,
             rest: None,
             history: History::since(begin),
+            clock: Mutex::default(),
         }
+    }
+
+    /// Sets what is known of the order of the next plans.
+    pub(super) fn set_clock(&self, facts: ClockFacts) {
+        *self.clock() = Some(facts);
+        // The same order may be flown at other times.
+        self.drop_flight();
+    }
+
+    fn clock(&self) -> MutexGuard<'_, Option<ClockFacts>> {
+        self.clock.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Sets the certified lower bound on all tours, s.
@@ -148,6 +165,8 @@ impl<'a> PlanBuilder<'a> {
             total: None,
             incumbent_s: Some(best.duration_s),
             lower_bound_s: Some(self.best_bound(found.lower_bound_s)),
+            value: None,
+            value_bound: None,
         });
         let gap = self.tours.places.scenario.options().relative_gap;
         let needed_s = best.duration_s * (1.0 - gap);
@@ -182,6 +201,16 @@ impl<'a> PlanBuilder<'a> {
         outcome(self.plan(&only, Optimality::Feasible, LowerBoundKind::PairTable))
     }
 
+    /// The plan of a schedule at the end of its search.
+    pub(super) fn scheduled_outcome(&self, last: &Incumbent<'_>, proved: bool) -> Outcome {
+        let optimality = if proved {
+            Optimality::Optimal
+        } else {
+            Optimality::Feasible
+        };
+        outcome(self.plan(last, optimality, LowerBoundKind::NlpRelaxation))
+    }
+
     /// The verified flight of an order.
     fn verified(&self, order: &[usize]) -> Result<VerifiedFlight, Problem> {
         if let Some((known, flight)) = self.last_flight().as_ref()
@@ -190,8 +219,14 @@ impl<'a> PlanBuilder<'a> {
             return Ok(flight.clone());
         }
         let route = self.tours.places.route(order, true);
-        // The segments are cached since their evaluation: nothing is solved here.
-        let flight = self.verify_flight(&route, &self.tours.solve_route(&route))?;
+        let chains = self.clock().as_ref().and_then(|facts| facts.chains.clone());
+        let flight = if let Some(chains) = chains {
+            let pieces: Vec<Piece<'_>> = chains.iter().map(SolvedChain::piece).collect();
+            self.verify_pieces(&route, &pieces)?
+        } else {
+            // The segments are cached since their evaluation: nothing is solved here.
+            self.verify_flight(&route, &self.tours.solve_route(&route))?
+        };
         self.keep_flight(order, &flight);
         Ok(flight)
     }
@@ -214,8 +249,25 @@ impl<'a> PlanBuilder<'a> {
         route: &[Place],
         segments: &[Arc<LegSolution>],
     ) -> Result<VerifiedFlight, Problem> {
-        let (flight, legs) = assemble(self.tours, route, segments);
-        let report = checker::verify(self.tours.places.scenario, &flight);
+        let places = self.tours.places.split(route);
+        let pieces = places.iter().zip(segments).map(|(places, motion)| Piece {
+            places,
+            delay: 0.0,
+            motion,
+        });
+        self.verify_pieces(route, &pieces.collect::<Vec<_>>())
+    }
+
+    /// The same for the pieces of a flight.
+    fn verify_pieces(
+        &self,
+        route: &[Place],
+        pieces: &[Piece<'_>],
+    ) -> Result<VerifiedFlight, Problem> {
+        let (flight, legs, waits) = assemble(self.tours, pieces);
+        let claims = self.clock().as_ref().map(|facts| facts.claims(&waits));
+        let claims = claims.unwrap_or_default();
+        let report = verify_with_claims(self.tours.places.scenario, &flight, &claims);
         if !report.verification.passed {
             let message = report.verification.failures.join("; ");
             let hint =
@@ -225,6 +277,7 @@ impl<'a> PlanBuilder<'a> {
         let verified = VerifiedFlight {
             flight,
             legs,
+            waits,
             report,
         };
         self.check_bounds(route, &verified);
@@ -242,6 +295,7 @@ impl<'a> PlanBuilder<'a> {
         let VerifiedFlight {
             flight,
             mut legs,
+            waits,
             report,
         } = self.verified(&order.best.order)?;
         let total = flight.total_time_s;
@@ -276,6 +330,7 @@ impl<'a> PlanBuilder<'a> {
                 .collect(),
             legs,
             rolls: Rolls::of(scenario, &flight, &report.states),
+            schedule: self.clock().clone().map(|facts| facts.schedule(waits)),
             flight,
             states: report.states,
             margins: report.margins,

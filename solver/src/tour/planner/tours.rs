@@ -79,6 +79,14 @@ impl<'a> Tours<'a> {
         free.get(from, to).cloned()
     }
 
+    /// Lower bound on the time of a leg, s, in any tour.
+    pub(super) fn leg_bound(&self, from: Place, to: Place) -> f64 {
+        let solved = self.known_free_leg(from, to);
+        let solved = solved.and_then(|leg| leg.leg.solution.least_duration());
+        let proved = self.certified.leg_s(from, to);
+        solved.map_or(proved, |solved| solved.max(proved))
+    }
+
     /// Number of intervals of every leg of a route.
     pub(super) fn intervals(&self, route: &[Place]) -> Vec<usize> {
         let waypoints = self.places.waypoints(route);
@@ -292,10 +300,7 @@ impl TourModel for Tours<'_> {
     }
 
     fn pair_bound(&self, from: Place, to: Place) -> f64 {
-        let solved = self.known_free_leg(from, to);
-        let solved = solved.and_then(|leg| leg.leg.solution.least_duration());
-        let proved = self.certified.leg_s(from, to);
-        solved.map_or(proved, |solved| solved.max(proved)) + self.places.service_time(to)
+        self.leg_bound(from, to) + self.places.service_time(to)
     }
 
     fn is_open(&self, from: Place, to: Place) -> bool {

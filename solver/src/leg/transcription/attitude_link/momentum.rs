@@ -3,18 +3,19 @@
 use super::LinkTerms;
 use crate::leg::transcription::Transcription;
 use crate::leg::transcription::rows::{add_attitude_block, double_cross_curvature};
-use crate::nlp::LinkModel;
+use crate::nlp::{Chain, LinkModel};
 
 impl Transcription {
     /// Adds the slopes and curvatures that go through `zeta`, whose derivative is
     /// `tau [eta]x d + eta dtau` with `eta = ts R(q)^T H`.
     pub(super) fn add_momentum_terms(&self, terms: &LinkTerms<'_>, out: &mut LinkModel) {
-        let (wheels, vars, angle) = (self.wheels(), out.vars, self.scales.angle);
+        let (vars, angle) = (out.vars, self.scales.angle);
         let (tau, eta) = (terms.tau, terms.momentum);
         let turned = eta.cross_matrix() * (tau * angle);
         let (slope, mixed, gradient) = (terms.slopes[2], terms.mixed[2], terms.gradient[2]);
         let [az, cz, zz] = [0, 1, 2].map(|input| terms.block(input, 2));
-        let (h_row, m_row, length_row) = (3, 3 + wheels, 3 + 2 * wheels);
+        let (h_row, m_row) = (3, self.state_dim());
+        let length_row = m_row + self.wheels();
 
         let (by_attitude, by_length) = (slope * turned, slope * eta);
         for row in 0..3 {

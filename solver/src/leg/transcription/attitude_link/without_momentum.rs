@@ -41,7 +41,8 @@ impl Transcription {
         lambda: &[f64],
         out: &mut LinkModel,
     ) -> bool {
-        if !matches!(self.turn_map, TurnMap::Magnus) {
+        // Compiled for states without a clock.
+        if self.has_clock || !matches!(self.turn_map, TurnMap::Magnus) {
             return false;
         }
         match self.wheels() {

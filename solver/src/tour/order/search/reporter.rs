@@ -59,6 +59,8 @@ impl<'a> SearchReporter<'a> {
             total: None,
             incumbent_s: self.incumbent_s,
             lower_bound_s: Some(self.bound_s),
+            value: None,
+            value_bound: None,
         });
     }
 

@@ -56,6 +56,9 @@ const TABLE: &[Row] = &[
     ("ScenarioSpec.targets", Effect::None, |s| {
         s.targets.truncate(2);
     }),
+    ("ScenarioSpec.latest_end_s", Effect::None, |s| {
+        s.latest_end_s = Some(900.0);
+    }),
     ("ScenarioSpec.keep_out", Effect::None, |s| {
         s.keep_out.clear();
     }),
@@ -162,6 +165,12 @@ const TABLE: &[Row] = &[
     }),
     ("TargetSpec.after", Effect::None, |s| {
         s.targets[2].after.clear();
+    }),
+    ("TargetSpec.windows", Effect::None, |s| {
+        s.targets[0].windows = Some(Vec::new());
+    }),
+    ("TargetSpec.value", Effect::None, |s| {
+        s.targets[0].value = Some(2.0);
     }),
     ("ConeSpec.boresight", Effect::None, |s| {
         s.spacecraft.boresights.push(BoresightSpec {
@@ -320,7 +329,7 @@ fn every_field_changes_the_identities_that_it_should_and_no_other() {
 fn the_table_lists_every_field() {
     let mut all = fields! {
         ScenarioSpec {
-            name, epoch, time_system, reference_frame, spacecraft, start, end, targets, keep_out, keep_in, options,
+            name, epoch, time_system, reference_frame, spacecraft, start, end, targets, latest_end_s, keep_out, keep_in, options,
         }
         SpacecraftSpec {
             inertia_kg_m2, max_body_rate_rad_s, max_body_rate_norm_rad_s, wheels, boresights,
@@ -332,7 +341,7 @@ fn the_table_lists_every_field() {
         StateSpec { attitude, pointing, body_rate_rad_s, wheel_speed_rad_s }
         TargetSpec {
             id, attitude, pointing, zero_rate_axes, rate_min_rad_s, rate_max_rad_s, dwell_s, settle_s, position,
-            after,
+            after, windows, value,
         }
         ConeSpec { boresight, direction, half_angle_deg, applies }
         OptionsSpec {

@@ -1,0 +1,337 @@
+//! Schedules: tours with windows, values and a latest end.
+//!
+//! Where every target is visited at rest, the legs do not couple: a table of their times is all that
+//! the choice of targets and their order needs, and to arrive early means to wait at rest. Of few
+//! targets all legs are solved first. Of many, legs count with their lower bounds, and those of the best
+//! schedule are solved until none of them is a bound: then it is the best of all.
+//!
+//! Where a rest leaves the roll or the momenta of a fourth wheel free, legs hardly couple: schedules are
+//! looked for in which every target is visited in one attitude, with the momenta of the start, and compared
+//! with bounds on all others.
+//!
+//! Where rates are free at targets, legs couple, and there is nowhere to wait: motions pass
+//! their targets within bounds of time, and a branch and bound solves their programs.
+
+mod additive;
+mod chains;
+mod coupled;
+mod explanation;
+mod problem;
+mod skipped;
+mod with_programs;
+
+use super::additive_tours::LegTimes;
+use super::legs::LegSolver;
+use super::places::Places;
+use super::plan_builder::PlanBuilder;
+use super::scheduled::ClockFacts;
+use super::tours::Tours;
+use super::unsolved::unsolved;
+use super::{Run, limited, tour_pairs};
+use crate::model::plan::{Optimality, Outcome};
+use crate::model::problem::{Code, Problem};
+use crate::model::scenario::{Scenario, Target};
+use crate::run::progress::{Progress, Stage};
+use crate::run::stop::StopSignal;
+use crate::tour::order::{
+    Incumbent, Place, SearchObserver, SearchStatistics, SolvedOrder, TourModel,
+};
+use crate::tour::schedule::{SearchLimits, TimedOrder, TimedProblem, TimedResult, search};
+pub(super) use chains::SolvedChain;
+use explanation::conflict;
+use problem::{MAX_COUPLED, MAX_WHEELS, is_plannable, leaves_nothing_free, timed_problem};
+use skipped::{Inclusions, untried};
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+/// Time, s, of a leg for which no solution was found.
+const NO_LEG_S: f64 = f64::INFINITY;
+/// Labels of a search for bounds alone.
+const LABELS_OF_BOUNDS: u64 = 400_000;
+/// Relative difference of ends that counts as none.
+const SAME_END: f64 = 1e-7;
+
+/// What is said of a scenario whose clock cannot be planned.
+pub(super) fn not_planned() -> Problem {
+    let message = format!(
+        "windows, values and a latest end are planned for targets that are visited at rest, or else for \
+         at most {MAX_COUPLED} targets and {MAX_WHEELS} enabled wheels"
+    );
+    let hint = "leave targets out, have them visited at rest, or leave windows, values and latest_end_s \
+                out and compare the times of the plan with them";
+    Problem::new("", Code::ClockNotPlanned, message, hint)
+}
+
+/// Solves a scenario with windows, values or a latest end, in which nothing is impossible by itself.
+pub(super) fn solve_schedule(scenario: &Scenario, run: Run<'_>) -> Outcome {
+    let begin = Instant::now();
+    let places = Places::of(scenario);
+    let stop = limited(scenario, run.stop);
+    let solver = LegSolver::new(&places, run, &stop);
+    let tours = Tours::new(&places, &solver, &stop);
+    solver.report_begin();
+    let planning = || Planning::new(&tours, run, begin);
+    if leaves_nothing_free(&places) {
+        return planning().with_legs_alone();
+    }
+    let at_rest = scenario.targets().iter().all(Target::rests);
+    let stopping = at_rest.then(|| {
+        let relaxed = planning().relaxed();
+        let places = Places::stopping(scenario);
+        let solver = LegSolver::new(&places, run, &stop);
+        let tours = Tours::new(&places, &solver, &stop);
+        let planning = Planning {
+            relaxed: Some(relaxed),
+            ..Planning::new(&tours, run, begin)
+        };
+        planning.with_legs_alone()
+    });
+    match stopping {
+        Some(outcome) if is_final(&outcome) || stop.is_set() || !is_plannable(&places) => outcome,
+        Some(outcome) => better(outcome, planning().with_programs()),
+        None if is_plannable(&places) => planning().with_programs(),
+        None => Outcome::Failed(vec![not_planned()]),
+    }
+}
+
+/// Whether nothing more is to be found out.
+fn is_final(outcome: &Outcome) -> bool {
+    match outcome {
+        Outcome::Planned(plan) => plan.optimality == Optimality::Optimal,
+        Outcome::Infeasible(_) => true,
+        Outcome::Failed(_) | Outcome::StoppedEmpty => false,
+    }
+}
+
+/// The better one of two answers to the same question.
+fn better(one: Outcome, other: Outcome) -> Outcome {
+    let rank = |outcome: &Outcome| match outcome {
+        Outcome::Planned(plan) => {
+            let value = plan
+                .schedule
+                .as_ref()
+                .map_or(0.0, |schedule| schedule.value);
+            Some((value, -plan.total_time_s))
+        }
+        _ => None,
+    };
+    match (rank(&one), rank(&other)) {
+        (Some(first), Some(second)) if first > second => one,
+        (Some(_), None) => one,
+        _ => other,
+    }
+}
+
+struct Planning<'a> {
+    problem: TimedProblem,
+    limits: SearchLimits,
+    tours: &'a Tours<'a>,
+    builder: PlanBuilder<'a>,
+    stop: &'a StopSignal,
+    run: Run<'a>,
+    /// The best schedule reported.
+    told: Mutex<Option<TimedOrder>>,
+    /// The bounds that hold, where the schedules looked for are not all that there are.
+    relaxed: Option<TimedResult>,
+}
+
+impl<'a> Planning<'a> {
+    fn new(tours: &'a Tours<'a>, run: Run<'a>, begin: Instant) -> Self {
+        let scenario = tours.places.scenario;
+        Self {
+            problem: timed_problem(scenario),
+            limits: SearchLimits {
+                labels: scenario.options().node_limit,
+                seed: scenario.options().seed,
+                ..SearchLimits::default()
+            },
+            builder: PlanBuilder::new(tours, run, begin),
+            tours,
+            stop: tours.stop,
+            run,
+            told: Mutex::default(),
+            relaxed: None,
+        }
+    }
+}
+
+impl Planning<'_> {
+    /// Reports the bounds, and a schedule if it is better than those before.
+    fn tell(&self, now: &TimedResult, chains: Option<&[SolvedChain]>) {
+        let now = &self.with_bounds_that_hold(now.clone());
+        self.report(Stage::Search, now);
+        let Some(best) = &now.best else { return };
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        let better = told.as_ref().is_none_or(|known| {
+            let by_value = best.value.total_cmp(&known.value);
+            by_value
+                .then_with(|| known.end_s.total_cmp(&best.end_s))
+                .is_gt()
+        });
+        if !better {
+            return;
+        }
+        *told = Some(best.clone());
+        self.builder.set_clock(ClockFacts {
+            value: best.value,
+            value_bound: now.value_bound,
+            skipped: untried(self.tours.places.scenario, &best.order),
+            chains: chains.map(<[SolvedChain]>::to_vec),
+        });
+        self.builder.improved(&incumbent(&solved(best), now));
+    }
+
+    /// The order of the best schedule reported; empty without one.
+    fn told_order(&self) -> Vec<usize> {
+        let told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        told.as_ref()
+            .map_or_else(Vec::new, |best| best.order.clone())
+    }
+
+    fn report(&self, stage: Stage, now: &TimedResult) {
+        let best = now.best.as_ref();
+        self.run.observer.progress(Progress {
+            stage,
+            done: now.labels,
+            total: None,
+            incumbent_s: best.map(|best| best.end_s),
+            lower_bound_s: Some(now.end_bound_s),
+            value: best.map(|best| best.value),
+            value_bound: Some(now.value_bound),
+        });
+    }
+
+    /// The plan of the best schedule, or why there is none.
+    fn conclude(&mut self, found: &TimedResult, chains: Option<&[SolvedChain]>) -> Outcome {
+        let times = |from, to| self.time_s(from, to);
+        let found = &self.with_bounds_that_hold(found.clone());
+        let Some(best) = &found.best else {
+            return if self.stop.is_set() {
+                Outcome::StoppedEmpty
+            } else if found.complete && !self.lacks_legs() {
+                Outcome::Infeasible(conflict(self.tours.places, &self.problem, &times))
+            } else {
+                unsolved(self.tours)
+            };
+        };
+        self.report(Stage::Verify, found);
+        let inclusions = Inclusions {
+            problem: &self.problem,
+            times: &times,
+            limits: self.limits,
+            stop: self.stop,
+            are_flown: chains.is_none(),
+        };
+        let proved = found.complete && !self.lacks_legs();
+        let facts = ClockFacts {
+            value: best.value,
+            value_bound: found.value_bound,
+            skipped: inclusions.of(self.tours.places.scenario, best, proved),
+            chains: chains.map(<[SolvedChain]>::to_vec),
+        };
+        let order = solved(best);
+        self.builder.compare_with_rest(&order);
+        self.builder.set_clock(facts);
+        self.builder
+            .scheduled_outcome(&incumbent(&order, found), proved)
+    }
+
+    /// What was found, with the bounds on all schedules in place of those on the schedules looked for.
+    fn with_bounds_that_hold(&self, mut found: TimedResult) -> TimedResult {
+        let Some(relaxed) = &self.relaxed else {
+            return found;
+        };
+        let known = found
+            .best
+            .as_ref()
+            .map_or((0.0, 0.0), |best| (best.value, best.end_s));
+        found.value_bound = relaxed.value_bound.max(known.0);
+        let most = relaxed.best.as_ref().map_or(0.0, |best| best.value);
+        let about_time = relaxed.complete && most <= known.0;
+        found.end_bound_s = if about_time {
+            relaxed.end_bound_s.min(known.1)
+        } else {
+            0.0
+        };
+        let gap = self
+            .tours
+            .places
+            .scenario
+            .options()
+            .relative_gap
+            .max(SAME_END);
+        found.complete = match &found.best {
+            Some(best) => about_time && found.end_bound_s >= best.end_s * (1.0 - gap),
+            None => relaxed.complete && relaxed.best.is_none(),
+        };
+        found
+    }
+
+    /// The search on lower bounds of the times of legs.
+    fn relaxed(&self) -> TimedResult {
+        if self.tours.places.needs_all_legs() {
+            self.solve_all_legs();
+        }
+        let times = |from, to| self.time_s(from, to);
+        let limits = SearchLimits {
+            labels: Some(self.limits.labels.unwrap_or(LABELS_OF_BOUNDS)),
+            ..self.limits
+        };
+        search(
+            &self.problem,
+            &times,
+            limits,
+            &|| self.stop.is_set(),
+            &mut |_| (),
+        )
+    }
+
+    /// Time of a leg, s, or a lower bound on it.
+    fn time_s(&self, from: Place, to: Place) -> f64 {
+        self.known_s(from, to)
+            .unwrap_or_else(|| self.tours.leg_bound(from, to))
+    }
+
+    /// Time of a leg that is solved, s.
+    fn known_s(&self, from: Place, to: Place) -> Option<f64> {
+        let leg = self.tours.known_free_leg(from, to)?.leg;
+        Some(leg.solution.least_duration().unwrap_or(NO_LEG_S))
+    }
+
+    /// Whether a leg has no solution, without which a better schedule cannot be excluded.
+    fn lacks_legs(&self) -> bool {
+        let pairs = tour_pairs(self.tours.places);
+        let failed = |leg: &(Place, Place)| self.known_s(leg.0, leg.1) == Some(NO_LEG_S);
+        pairs.iter().any(failed)
+    }
+
+    /// Solves all legs between places, each with the conditions of its own ends only.
+    fn solve_all_legs(&self) {
+        let mut pairs = tour_pairs(self.tours.places);
+        if self.tours.has_end() {
+            // All targets may be left out.
+            pairs.push((Place::Start, Place::End));
+        }
+        self.tours.certified.raise(&pairs);
+        self.tours.solve_free_legs(&pairs);
+    }
+}
+
+fn solved(best: &TimedOrder) -> SolvedOrder {
+    SolvedOrder {
+        order: best.order.clone(),
+        duration_s: best.end_s,
+    }
+}
+
+fn incumbent<'a>(best: &'a SolvedOrder, now: &TimedResult) -> Incumbent<'a> {
+    Incumbent {
+        best,
+        alternatives: &[],
+        lower_bound_s: now.end_bound_s,
+        statistics: SearchStatistics {
+            nodes_explored: now.labels,
+            ..SearchStatistics::default()
+        },
+    }
+}

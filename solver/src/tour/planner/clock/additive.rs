@@ -1,0 +1,133 @@
+//! Schedules whose legs do not couple: the search on their times is all there is to it.
+
+use super::{NO_LEG_S, Planning};
+use crate::model::plan::Outcome;
+use crate::tour::order::{Place, TourModel};
+use crate::tour::planner::additive_tours::LegTimes;
+use crate::tour::planner::turn_estimates::TurnEstimates;
+use crate::tour::schedule::{SearchLimits, TimedResult, possible_legs, search_from};
+
+/// Rounds of first schedules among many targets.
+const FIRST_ROUNDS: usize = 8;
+/// Local searches where nothing is proved.
+const MORE_ROUNDS: usize = 1000;
+/// Legs that are solved between two looks for better schedules of solved legs.
+const LEGS_AT_ONCE: usize = 1000;
+
+impl Planning<'_> {
+    /// The answer where every target is visited at rest.
+    pub(super) fn with_legs_alone(mut self) -> Outcome {
+        if self.tours.places.needs_all_legs() {
+            self.solve_all_legs();
+        } else {
+            self.solve_legs_in_time();
+        }
+        let mut value_bound = f64::INFINITY;
+        loop {
+            let found = self.search();
+            value_bound = value_bound.min(found.value_bound);
+            let order = found.best.as_ref().map(|best| &best.order[..]);
+            let open = order.map_or(Vec::new(), |order| self.open_legs(order));
+            if open.is_empty() {
+                return self.conclude(&found, None);
+            }
+            if self.stop.is_set() {
+                let known = TimedResult {
+                    best: self.search_solved(None).best,
+                    value_bound,
+                    complete: false,
+                    end_bound_s: 0.0,
+                    ..found
+                };
+                return self.conclude(&known, None);
+            }
+            self.solve(&open);
+            self.tell_solved(&found);
+        }
+    }
+
+    /// Of many targets: the legs of good schedules first, then all that are possible in time.
+    fn solve_legs_in_time(&self) {
+        let estimates = TurnEstimates::of(self.tours.places);
+        for _ in 0..FIRST_ROUNDS {
+            let found = self.search_solved(Some(&estimates));
+            let order = found.best.as_ref().map(|best| &best.order[..]);
+            let open = order.map_or(Vec::new(), |order| self.open_legs(order));
+            if open.is_empty() || self.stop.is_set() {
+                break;
+            }
+            self.solve(&open);
+        }
+        // Bounds on what is not solved yet, before the legs take the time that is left.
+        let relaxed = self.relaxed();
+        self.tell_solved(&relaxed);
+        let times = |from, to| self.time_s(from, to);
+        let possible = possible_legs(&self.problem, &times);
+        let open: Vec<_> = possible
+            .into_iter()
+            .filter(|(from, to)| self.tours.is_open(*from, *to))
+            .collect();
+        for some in open.chunks(LEGS_AT_ONCE) {
+            if self.stop.is_set() {
+                return;
+            }
+            self.tours.solve_free_legs(some);
+            self.tell_solved(&relaxed);
+        }
+    }
+
+    fn solve(&self, legs: &[(Place, Place)]) {
+        self.tours.certified.raise(legs);
+        self.tours.solve_free_legs(legs);
+    }
+
+    /// Reports the best schedule all of whose legs are solved, with the bounds of a search.
+    fn tell_solved(&self, bounds: &TimedResult) {
+        let known = TimedResult {
+            best: self.search_solved(None).best,
+            ..bounds.clone()
+        };
+        self.tell(&known, None);
+    }
+
+    /// The search with bounds for the times of legs that are not solved.
+    fn search(&self) -> TimedResult {
+        let times = |from, to| self.time_s(from, to);
+        let stop = || self.stop.is_set();
+        let limits = SearchLimits {
+            // A limit of nodes is one of labels, and then of the whole search.
+            more_rounds: self.limits.labels.map_or(MORE_ROUNDS, |_| 0),
+            ..self.limits
+        };
+        let all = (&self.problem, &times);
+        let first = self.told_order();
+        search_from(all, &first, limits, &stop, &mut |now| {
+            let order = now.best.as_ref().map(|best| &best.order[..]);
+            if order.is_some_and(|order| self.open_legs(order).is_empty()) {
+                self.tell(now, None);
+            }
+        })
+    }
+
+    /// A good schedule all of whose legs are solved, or else have an estimate.
+    fn search_solved(&self, estimates: Option<&TurnEstimates<'_>>) -> TimedResult {
+        let times = |from, to| {
+            let estimate = || estimates.map(|estimates| estimates.duration_s(from, to));
+            self.known_s(from, to).or_else(estimate).unwrap_or(NO_LEG_S)
+        };
+        let limits = SearchLimits {
+            labels: Some(0),
+            ..self.limits
+        };
+        let all = (&self.problem, &times);
+        let stop = || self.stop.is_set();
+        search_from(all, &self.told_order(), limits, &stop, &mut |_| ())
+    }
+
+    fn open_legs(&self, order: &[usize]) -> Vec<(Place, Place)> {
+        let route = self.tours.places.route(order, true);
+        let legs = route.windows(2).map(|leg| (leg[0], leg[1]));
+        legs.filter(|(from, to)| self.tours.is_open(*from, *to))
+            .collect()
+    }
+}

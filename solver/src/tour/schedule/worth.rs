@@ -1,0 +1,73 @@
+//! Values of targets in whole units, so that sums do not depend on the order of their terms.
+//!
+//! The unit is a power of ten, some 1e-12 of the sum of all values: values as people write them are
+//! whole numbers of it, and equal sums of them are equal. A required target is worth more than all
+//! optional ones together, so that a schedule without it loses against every one with it.
+
+use super::TimedTarget;
+
+/// Units of the sum of all values, at most.
+const DIGITS: f64 = 1e12;
+
+/// What the targets are worth, in units.
+#[derive(Debug, Clone)]
+pub(super) struct Worth {
+    /// Of each target.
+    pub(super) units: Vec<u64>,
+    /// Value of a unit.
+    unit: f64,
+    /// Of a required one; the optional ones together are worth less.
+    required: u64,
+}
+
+impl Worth {
+    pub(super) fn of(targets: &[TimedTarget]) -> Self {
+        let sum: f64 = targets.iter().filter_map(|target| target.value).sum();
+        // The least power of ten that is not below the sum, some digits smaller.
+        let mut unit = 1e-300;
+        while unit * DIGITS < sum {
+            unit *= 10.0;
+        }
+        // At least one, so that no value counts as nothing.
+        let optional = |value: f64| whole(value / unit).max(1);
+        let units = targets.iter().map(|target| target.value.map(optional));
+        let units: Vec<Option<u64>> = units.collect();
+        let required = 1 + units.iter().flatten().sum::<u64>();
+        Self {
+            units: units.into_iter().map(|u| u.unwrap_or(required)).collect(),
+            required,
+            unit,
+        }
+    }
+
+    /// How many required targets are among those that are worth so much together.
+    pub(super) fn required_in(&self, units: u64) -> u64 {
+        units / self.required
+    }
+
+    /// How many targets are required.
+    pub(super) fn required(&self) -> u64 {
+        let required = self.units.iter().filter(|units| **units == self.required);
+        required.count() as u64
+    }
+
+    /// The values of optional targets in a bound on the sum of units.
+    pub(super) fn value_of(&self, units: u64) -> f64 {
+        let missed = self.required().saturating_sub(self.required_in(units));
+        if missed > 0 {
+            // Less than all required targets: there is no schedule.
+            return 0.0;
+        }
+        (units % self.required) as f64 * self.unit
+    }
+}
+
+/// The nearest whole number.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "numbers of units are between 0 and 1e12"
+)]
+fn whole(units: f64) -> u64 {
+    units.round() as u64
+}

@@ -2,6 +2,7 @@
 
 import { answers } from "./answers.mjs";
 import { body } from "./body.mjs";
+import { clock } from "./clock.mjs";
 import { compare } from "./compare.mjs";
 import { desk } from "./desk.mjs";
 import { deskModules } from "./desk-modules.mjs";
@@ -20,7 +21,7 @@ import { studies } from "./studies.mjs";
 import { units } from "./units.mjs";
 import { violations } from "./violations.mjs";
 
-const PARTS = { modules, hostile, journeys, "from-blank": fromBlank, desk, "desk-modules": deskModules, answers, details, body, units, compare, matrix, order, pictures, "long-work": longWork, studies, violations, looks };
+const PARTS = { modules, hostile, journeys, "from-blank": fromBlank, desk, "desk-modules": deskModules, answers, details, body, units, clock, compare, matrix, order, pictures, "long-work": longWork, studies, violations, looks };
 
 const asked = process.argv.slice(2);
 const unknown = asked.filter((name) => !(name in PARTS));

@@ -4,6 +4,7 @@
 //! scenarios legs [COUNT]                            so many of each spacecraft, 3 unless given
 //! scenarios ordinary FIRST END TARGETS SPREAD       seeds from FIRST to before END
 //! scenarios schedule REGION RATES TARGETS SEED      sphere or strip, rest or z
+//! scenarios pass RATES TARGETS DURATION SEED        with windows and values, in so many seconds
 //! ```
 
 use serde_json::{Map, Value, json};
@@ -11,7 +12,7 @@ use slewplan_solver::model::spec::{
     AttitudeSpec, ScenarioSpec, SpacecraftSpec, TargetSpec, WheelSpec,
 };
 use slewplan_tests::ordinary;
-use slewplan_tests::schedules::{RateConditions, Region, schedule};
+use slewplan_tests::schedules::{Pass, RateConditions, Region, pass, schedule};
 use slewplan_tests::suite::{SPACECRAFT, leg};
 
 fn main() {
@@ -33,8 +34,18 @@ fn main() {
             let spec = schedule(region_of(region), rates_of(rates), targets, number(seed));
             println!("{}", document(&spec));
         }
+        ["pass", rates, targets, duration, seed] => {
+            let spec = pass(Pass {
+                rates: rates_of(rates),
+                targets: targets.parse().expect("a number of targets"),
+                duration_s: duration.parse().expect("a number of seconds"),
+                seed: number(seed),
+            });
+            println!("{}", document(&spec));
+        }
         _ => panic!(
-            "legs [COUNT] | ordinary FIRST END TARGETS SPREAD | schedule REGION RATES TARGETS SEED"
+            "legs [COUNT] | ordinary FIRST END TARGETS SPREAD | schedule REGION RATES TARGETS SEED \
+             | pass RATES TARGETS DURATION SEED"
         ),
     }
 }
@@ -76,6 +87,7 @@ fn document(spec: &ScenarioSpec) -> Value {
         ("spacecraft", spacecraft(&spec.spacecraft)),
         ("start", start),
         ("end", json!(end)),
+        ("latest_end_s", json!(spec.latest_end_s)),
         (
             "targets",
             json!(spec.targets.iter().map(target).collect::<Vec<_>>()),
@@ -115,12 +127,19 @@ fn target(spec: &TargetSpec) -> Value {
             .filter_map(|(axis, zero)| zero.then_some(axis))
             .collect::<Vec<_>>()
     });
+    let windows = spec.windows.as_ref().map(|windows| {
+        let spans = windows.iter();
+        let spans = spans.map(|window| json!({"from_s": window.from_s, "to_s": window.to_s}));
+        spans.collect::<Vec<_>>()
+    });
     object([
         ("id", json!(spec.id)),
         ("attitude", attitude(&spec.attitude)),
         ("zero_rate_axes", json!(stopped)),
         ("rate_min_rad_s", json!(spec.rate_min_rad_s)),
         ("rate_max_rad_s", json!(spec.rate_max_rad_s)),
+        ("windows", json!(windows)),
+        ("value", json!(spec.value)),
     ])
 }
 

@@ -17,6 +17,13 @@ fn refused(scenario: &Value, expected: &[(&str, &str)]) {
 }
 
 #[test]
+fn the_campaign_of_two_hundred_stars_is_valid() {
+    let campaign = fixture_json("campaign/campaign.json");
+    assert_eq!(campaign["targets"].as_array().map(Vec::len), Some(200));
+    slewplan_fed(&["validate", "-"], campaign.to_string().as_bytes()).expect_code(0);
+}
+
+#[test]
 fn windows_that_are_none_are_refused_where_they_stand() {
     let at = |rest: &str| format!("/targets/0/windows{rest}");
     let cases = [

@@ -84,6 +84,56 @@ impl TimedProblem {
     }
 }
 
+impl TimedProblem {
+    /// The schedule of an order, each visit as early as possible; `None` where it breaks a window, a rule or
+    /// the latest end.
+    #[must_use]
+    pub fn schedule_of(
+        &self,
+        order: &[usize],
+        times: &(impl TravelTimes + ?Sized),
+    ) -> Option<TimedOrder> {
+        let (mut at, mut time) = (Place::Start, 0.0);
+        let mut begins_s = Vec::with_capacity(order.len());
+        for (place, &target) in order.iter().enumerate() {
+            let misplaced = self.rules.position(target).is_some_and(|p| p != place);
+            let before = self.rules.predecessors(target);
+            if misplaced || before.iter().any(|other| order[place..].contains(other)) {
+                return None;
+            }
+            let begin =
+                self.begin_after(target, time + times.travel_s(at, Place::Target(target)))?;
+            begins_s.push(begin);
+            (at, time) = (
+                Place::Target(target),
+                begin + self.targets[target].service_s,
+            );
+        }
+        if self.has_end {
+            time += times.travel_s(at, Place::End);
+        }
+        let is_in_time = time <= self.latest_end_s.unwrap_or(f64::MAX);
+        is_in_time.then(|| TimedOrder {
+            value: self.value_of(order),
+            order: order.to_vec(),
+            begins_s,
+            end_s: time,
+        })
+    }
+
+    /// When a visit begins at the earliest after an arrival, s.
+    fn begin_after(&self, target: usize, arrival: f64) -> Option<f64> {
+        let TimedTarget {
+            service_s, windows, ..
+        } = &self.targets[target];
+        let Some(windows) = windows else {
+            return arrival.is_finite().then_some(arrival);
+        };
+        let next = windows.iter().find(|[_, to]| arrival <= to - service_s)?;
+        Some(arrival.max(next[0]))
+    }
+}
+
 /// Times of the legs between the places of a problem.
 pub trait TravelTimes {
     /// Time, s, of the leg between two places, not negative; infinite where there is none.

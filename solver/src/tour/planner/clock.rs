@@ -159,8 +159,9 @@ impl Planning<'_> {
     /// Reports the bounds, and a schedule if it is better than those before.
     fn tell(&self, now: &TimedResult, chains: Option<&[SolvedChain]>) {
         let now = &self.with_bounds_that_hold(now.clone());
-        self.report(Stage::Search, now);
-        let Some(best) = &now.best else { return };
+        let Some(best) = &now.best else {
+            return self.report(Stage::Search, now);
+        };
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         let better = told.as_ref().is_none_or(|known| {
             let by_value = best.value.total_cmp(&known.value);
@@ -172,6 +173,7 @@ impl Planning<'_> {
             return;
         }
         *told = Some(best.clone());
+        self.report(Stage::Search, now);
         self.builder.set_clock(ClockFacts {
             value: best.value,
             value_bound: now.value_bound,

@@ -107,8 +107,13 @@ impl Case {
     fn enumerate(&self, order: &mut Vec<usize>, best: &mut Option<(f64, f64)>) {
         let targets = &self.problem.targets;
         let missing = |i: &usize| targets[*i].value.is_none() && !order.contains(i);
+        let end = self.end(order);
+        let schedule = self
+            .problem
+            .schedule_of(order, &|from, to| self.time(from, to));
+        assert_eq!(schedule.map(|schedule| schedule.end_s), end, "{order:?}");
         if !(0..targets.len()).any(|i| missing(&i))
-            && let Some(end) = self.end(order)
+            && let Some(end) = end
         {
             let value = self.tenths(order);
             let better = |(most, first): &(f64, f64)| {

@@ -5,7 +5,7 @@ use crate::model::plan::Outcome;
 use crate::tour::order::{Place, TourModel};
 use crate::tour::planner::additive_tours::LegTimes;
 use crate::tour::planner::turn_estimates::TurnEstimates;
-use crate::tour::schedule::{SearchLimits, TimedResult, possible_legs, search_from};
+use crate::tour::schedule::{SearchLimits, TimedOrder, TimedResult, possible_legs, search_from};
 
 /// Rounds of first schedules among many targets.
 const FIRST_ROUNDS: usize = 8;
@@ -53,10 +53,20 @@ impl Planning<'_> {
             let found = self.search_solved(Some(&estimates));
             let order = found.best.as_ref().map(|best| &best.order[..]);
             let open = order.map_or(Vec::new(), |order| self.open_legs(order));
+            self.solve(&open);
+            if let Some(best) = order.and_then(|order| self.what_fits(order)) {
+                let best = Some(best).filter(|best| self.has_required(best));
+                self.tell(
+                    &TimedResult {
+                        best,
+                        ..found.clone()
+                    },
+                    None,
+                );
+            }
             if open.is_empty() || self.stop.is_set() {
                 break;
             }
-            self.solve(&open);
         }
         // Bounds on what is not solved yet, before the legs take the time that is left.
         let relaxed = self.relaxed();
@@ -76,7 +86,36 @@ impl Planning<'_> {
         }
     }
 
+    /// The schedule of the visits of an order that fit one after the other, all of whose legs are solved:
+    /// legs take longer than their estimates.
+    fn what_fits(&self, order: &[usize]) -> Option<TimedOrder> {
+        let times = |from, to| self.known_s(from, to).unwrap_or(NO_LEG_S);
+        let mut fitting = self.problem.schedule_of(&[], &times);
+        let mut kept: Vec<usize> = Vec::new();
+        for target in order {
+            kept.push(*target);
+            self.solve(&self.open_legs(&kept));
+            match self.problem.schedule_of(&kept, &times) {
+                Some(longer) => fitting = Some(longer),
+                None => {
+                    kept.pop();
+                }
+            }
+        }
+        fitting
+    }
+
+    /// Whether a schedule visits all targets that have to be visited.
+    fn has_required(&self, schedule: &TimedOrder) -> bool {
+        let targets = self.problem.targets.iter().enumerate();
+        let mut required = targets.filter(|(_, target)| target.value.is_none());
+        required.all(|(target, _)| schedule.order.contains(&target))
+    }
+
     fn solve(&self, legs: &[(Place, Place)]) {
+        if legs.is_empty() {
+            return;
+        }
         self.tours.certified.raise(legs);
         self.tours.solve_free_legs(legs);
     }

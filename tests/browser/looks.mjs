@@ -42,6 +42,7 @@ export async function looks({ browser, service, must }) {
           const found = await findings(page);
           check(found.length === 0, found.join("\n"));
           await uncut(page);
+          if (view === "list") await namedInWords(page);
         });
       }
       await must(`the console is silent, ${size}, ${theme}`, () => check(complaints.length === 0, complaints.join("\n")));
@@ -68,6 +69,12 @@ async function ready(page, view) {
     slider.dispatchEvent(new Event("input"));
   });
   return page.waitForFunction(() => !document.querySelector(".playback-moment").textContent.startsWith("0.0 s"));
+}
+
+/** Names of plans have room for words, whatever else is in their rows. */
+async function namedInWords(page) {
+  const widths = await page.locator("tbody th[scope=row]").evaluateAll((all) => all.map((cell) => cell.clientWidth));
+  check(widths.length > 0 && Math.min(...widths) >= 100, `names of ${Math.min(...widths)} px`);
 }
 
 async function send(page, verb) {

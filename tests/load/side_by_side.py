@@ -90,8 +90,9 @@ class LongJob:
         job = self.service.job(self.id)
         self.service.request("POST", f"/v1/plans/{self.id}/cancel")
         self.service.wait_end(self.id)
-        total = job["incumbent_s"]
-        return "no plan" if total is None else f"{total:.1f} s, bound {job['lower_bound_s']:.1f} s"
+        told = [job["incumbent_s"], job["lower_bound_s"]]
+        total, bound = ["none yet" if value is None else f"{value:.1f} s" for value in told]
+        return f"{total}, bound {bound}"
 
 
 def answered(service, number):

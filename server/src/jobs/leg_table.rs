@@ -6,14 +6,12 @@
 use super::Jobs;
 use super::solve::{self, JobContext};
 use crate::base::clock::now_us;
-use crate::base::contradictions::ContradictionObserver;
 use crate::documents::document;
 use crate::documents::leg_query::{self, LegQuery, Pair, Refusal};
 use crate::documents::leg_rows::{LegRow, Source};
 use crate::store::{EndCode, Ended, JobRow, JobState, LegCounts, NewTablePart, PackedPlan};
 use slewplan_solver::run::stop::StopReason;
-use slewplan_solver::tour::legs::NoStore;
-use slewplan_solver::tour::planner::{LegTimeTable, Run};
+use slewplan_solver::tour::planner::LegTimeTable;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
 use tokio::runtime::Handle;
@@ -44,14 +42,7 @@ fn attempt(query: &[u8], context: &JobContext<'_>, parts: &TableStore<'_>) -> En
         Ok(query) => query,
         Err(ended) => return *ended,
     };
-    let run = Run {
-        pool: context.pool,
-        stop: context.stop,
-        observer: &ContradictionObserver,
-        legs: context.legs,
-        segments: &NoStore,
-    };
-    let table = LegTimeTable::of(&query.scenario, query.kind, run);
+    let table = LegTimeTable::of(&query.scenario, query.kind, context.run_of_legs());
     let total = query.pairs.len();
     let known = parts.begun(total, context);
     let mut complete = true;

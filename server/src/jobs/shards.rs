@@ -9,14 +9,13 @@ use super::Jobs;
 use super::leg_table;
 use super::solve::JobContext;
 use crate::base::clock::now_us;
-use crate::base::contradictions::ContradictionObserver;
 use crate::documents;
 use crate::store::{JobRow, NewShard, Notice, ShardedJob};
 use serde::{Deserialize, Serialize};
 use slewplan_solver::model::scenario::Scenario;
-use slewplan_solver::tour::legs::{LegKind, NoStore};
+use slewplan_solver::tour::legs::LegKind;
 use slewplan_solver::tour::order::Place;
-use slewplan_solver::tour::planner::{LegTimeTable, Run};
+use slewplan_solver::tour::planner::LegTimeTable;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use uuid::Uuid;
@@ -164,15 +163,9 @@ pub(super) fn solve(document: &[u8], job: &ShardedJob, context: &JobContext<'_>)
         tracing::warn!("a part of a table of another version is left to its job");
         return;
     };
-    let run = Run {
-        pool: context.pool,
-        stop: context.stop,
-        observer: &ContradictionObserver,
-        legs: context.legs,
-        segments: &NoStore,
-    };
     // The legs are in the cache: nobody asks for their times here.
-    let _ = LegTimeTable::of(&shard.scenario, shard.kind, run).solved(&shard.pairs);
+    let _ =
+        LegTimeTable::of(&shard.scenario, shard.kind, context.run_of_legs()).solved(&shard.pairs);
 }
 
 #[cfg(test)]

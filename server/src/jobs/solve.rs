@@ -2,6 +2,7 @@
 
 use super::memory::MemoryGuard;
 use super::progress::Reporter;
+use crate::base::contradictions::ContradictionObserver;
 use crate::documents;
 use crate::documents::plan::Interruption;
 use crate::store::{EndCode, Ended, JobState, PackedPlan};
@@ -10,7 +11,7 @@ use slewplan_solver::model::problem::Problem;
 use slewplan_solver::model::scenario::Validated;
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::{StopReason, StopSignal};
-use slewplan_solver::tour::legs::{LegStore, SegmentStore};
+use slewplan_solver::tour::legs::{LegStore, NoStore, SegmentStore};
 use slewplan_solver::tour::planner::{self, Run};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice;
@@ -32,6 +33,17 @@ pub(super) struct JobContext<'a> {
 }
 
 impl JobContext<'_> {
+    /// A run that solves legs and nothing else. Bounds that they contradict are reported.
+    pub(super) fn run_of_legs(&self) -> Run<'_> {
+        Run {
+            pool: self.pool,
+            stop: self.stop,
+            observer: &ContradictionObserver,
+            legs: self.legs,
+            segments: &NoStore,
+        }
+    }
+
     /// The cause that stopped the solve.
     pub(super) fn interruption(&self) -> Interruption {
         match self.memory.exceeded() {

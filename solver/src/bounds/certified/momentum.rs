@@ -53,6 +53,7 @@ const MAX_TRIED: usize = 32;
 pub(super) struct MomentumBounds {
     spacecraft: Dynamics,
     facets: Facets,
+    growth: RateGrowth,
     /// The values of `k`, 1/(kg m²).
     shares: [f64; 2],
     /// The frames that every leg tries.
@@ -87,14 +88,16 @@ impl MomentumBounds {
     /// The bounds in some orthonormal frames, given as columns in body axes, and in others that fit.
     pub(super) fn of(dynamics: &Dynamics, frames: &[Matrix3<f64>]) -> Self {
         let shares = [0.0, dynamics.mean_inverse_inertia()];
+        let growth = RateGrowth::of(dynamics);
         let all = frames
             .iter()
             .flat_map(|axes| shares.map(|share| (*axes, share)));
         Self {
             frames: all
-                .filter_map(|(axes, share)| DriftingFrame::of(dynamics, axes, share))
+                .filter_map(|(axes, share)| DriftingFrame::of(dynamics, &growth, axes, share))
                 .collect(),
             facets: Facets::of(dynamics),
+            growth,
             spacecraft: dynamics.clone(),
             shares,
             fitted: Mutex::default(),
@@ -142,7 +145,7 @@ impl MomentumBounds {
         }
         // Computed without the lock: two threads may prepare the same, with the same result.
         let axes = self.facets.axes(key);
-        let with = |share| DriftingFrame::of(&self.spacecraft, axes, share);
+        let with = |share| DriftingFrame::of(&self.spacecraft, &self.growth, axes, share);
         let fresh = Arc::new(self.shares.map(with));
         let mut known = lock();
         if known.len() < MAX_PREPARED {
@@ -153,7 +156,12 @@ impl MomentumBounds {
 }
 
 impl DriftingFrame {
-    fn of(dynamics: &Dynamics, axes: Matrix3<f64>, share: f64) -> Option<Self> {
+    fn of(
+        dynamics: &Dynamics,
+        growth: &RateGrowth,
+        axes: Matrix3<f64>,
+        share: f64,
+    ) -> Option<Self> {
         let drift = share * dynamics.momentum.norm();
         let rate = |axis: &Vector3<f64>| {
             dynamics
@@ -167,7 +175,6 @@ impl DriftingFrame {
             rates_rad_s: along(&axes, rate),
             accelerations_rad_s2: along(&axes, acceleration),
         };
-        let growth = RateGrowth::of(dynamics);
         let slopes = Vector3::from_fn(|axis, _| {
             let direction = axes.column(axis).into_owned();
             growth.slope(

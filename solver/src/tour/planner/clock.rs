@@ -122,6 +122,12 @@ fn better(one: Outcome, other: Outcome) -> Outcome {
     }
 }
 
+/// A bound on the ends of schedules, s, with which one that ends at some time, s, is as good as the best.
+fn enough_s(places: &Places<'_>, end_s: f64) -> f64 {
+    let gap = places.scenario.options().relative_gap;
+    end_s * (1.0 - gap.max(SAME_END))
+}
+
 struct Planning<'a> {
     problem: TimedProblem,
     limits: SearchLimits,
@@ -255,15 +261,9 @@ impl Planning<'_> {
         } else {
             0.0
         };
-        let gap = self
-            .tours
-            .places
-            .scenario
-            .options()
-            .relative_gap
-            .max(SAME_END);
+        let enough = |best: &TimedOrder| enough_s(self.tours.places, best.end_s);
         found.complete = match &found.best {
-            Some(best) => about_time && found.end_bound_s >= best.end_s * (1.0 - gap),
+            Some(best) => about_time && found.end_bound_s >= enough(best),
             None => relaxed.complete && relaxed.best.is_none(),
         };
         found

@@ -7,7 +7,7 @@ use super::Run;
 use super::bounds_by_form::BoundsByForm;
 use super::canonical::{CanonicalLeg, missing_from};
 use super::from_store::{leg_from_store, stored_leg};
-use super::legs_ahead::LegsAhead;
+use super::legs_ahead::{LegsAhead, offer};
 use super::places::Places;
 use super::tables::{CertifiedLeg, SolvedLeg, SolvedTable, Table, TabulatedLeg};
 use super::verified::{flight_faults, is_feasible};
@@ -132,7 +132,10 @@ impl<'a> LegSolver<'a> {
     ) -> Vec<Option<TabulatedLeg>> {
         let tell = |done, total| self.report_progress(done, Some(total));
         let mut canonical = self.all_canonical(kind, pairs);
-        self.offer(kind, pairs, &canonical);
+        if self.run.legs.is_shared() {
+            let missing = missing_from(&lock(&self.known), &canonical);
+            offer(self.run.legs, kind, pairs, &missing);
+        }
         self.solve_missing(kind, &canonical, tell);
         if !self.places.with_cones.cones.is_empty() {
             let legs: Vec<_> = pairs.iter().zip(&canonical).collect();
@@ -288,19 +291,6 @@ impl<'a> LegSolver<'a> {
     fn is_abandoned(&self) -> bool {
         let reason = self.stop.reason();
         reason.is_some_and(|reason| reason != StopReason::Requested)
-    }
-
-    /// Offers the legs to others that are not stored, where somebody may take them.
-    fn offer(&self, kind: LegKind, pairs: &[(Place, Place)], canonical: &[Option<CanonicalLeg>]) {
-        if !self.run.legs.is_shared() {
-            return;
-        }
-        let missing = missing_from(&lock(&self.known), canonical);
-        let identities: Vec<_> = missing.iter().map(|(_, leg)| &*leg.identity).collect();
-        let times = self.run.legs.times(&identities);
-        let unsolved = missing.iter().zip(times).filter(|(_, time)| time.is_none());
-        let unsolved: Vec<_> = unsolved.map(|((place, _), _)| pairs[*place]).collect();
-        self.run.legs.offer(kind, &unsolved);
     }
 
     fn solve_missing(

@@ -1,8 +1,23 @@
-//! Stored legs, looked up some at once when the first of them is wanted.
+//! What the store has of a list of legs: looked up some at once, and the rest offered to others.
 
 use super::canonical::CanonicalLeg;
-use crate::tour::legs::{LegStore, StoredLeg};
+use crate::tour::legs::{LegKind, LegStore, StoredLeg};
+use crate::tour::order::Place;
 use std::sync::{Mutex, OnceLock, PoisonError};
+
+/// Offers those of the missing legs to others that are not stored. The number of each is that of its pair.
+pub(super) fn offer(
+    store: &dyn LegStore,
+    kind: LegKind,
+    pairs: &[(Place, Place)],
+    missing: &[(usize, &CanonicalLeg)],
+) {
+    let identities: Vec<_> = missing.iter().map(|(_, leg)| &*leg.identity).collect();
+    let times = store.times(&identities);
+    let unsolved = missing.iter().zip(times).filter(|(_, time)| time.is_none());
+    let unsolved: Vec<_> = unsolved.map(|((pair, _), _)| pairs[*pair]).collect();
+    store.offer(kind, &unsolved);
+}
 
 /// The stored legs of a list. A leg that is stored after the others of its batch were looked up is not
 /// found: it is solved again, with the same result.

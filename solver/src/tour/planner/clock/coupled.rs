@@ -9,8 +9,8 @@
 mod node;
 mod whole;
 
-use super::SAME_END;
 use super::chains::{NoChain, SolvedChain, may_wait, solve_chain};
+use super::enough_s;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use crate::tour::order::Place;
@@ -131,14 +131,7 @@ impl<'a> CoupledSearch<'a> {
 
     fn is_of_interest(&self, bound: Rank) -> bool {
         let Some(best) = &self.best else { return true };
-        let gap = self
-            .tours
-            .places
-            .scenario
-            .options()
-            .relative_gap
-            .max(SAME_END);
-        let enough = best.rank.end_s * (1.0 - gap);
+        let enough = enough_s(self.tours.places, best.rank.end_s);
         bound.units > best.rank.units || bound.units == best.rank.units && bound.end_s < enough
     }
 

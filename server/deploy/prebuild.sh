@@ -12,8 +12,8 @@ cd "$(dirname "$0")/../.."
 
 # Only the last step differs from any other build: a program is made static when it is linked. glibc,
 # not musl, because it is what everything else is tested with. It cannot look up names of hosts and
-# users when it is static, nor load libraries; nothing here does. Where addresses are filled in at the
-# start takes a bit for each instead of 24 bytes, a megabyte in all.
+# users when it is static, nor load libraries; nothing here does. Relative relocations
+# are packed, a bit for each instead of 24 bytes: a megabyte less.
 cargo rustc --locked --package slewplan-server --bin slewplan --profile "$profile" -- \
     -C target-feature=+crt-static -C link-arg=-Wl,-z,pack-relative-relocs
 case $profile in

@@ -94,29 +94,44 @@ def length(times, tour):
     return sum(times[one][other] for one, other in zip(tour, tour[1:]))
 
 
-def by_routing(times, limit):
-    """The tour of OR-Tools, and the seconds it took."""
-    last = len(times) - 1
-    begin = time.perf_counter()
-    manager = pywrapcp.RoutingIndexManager(len(times), 1, [0], [last])
+def routing_model(times):
+    """Manager, model and evaluator of the legs, whose times in units are their costs: first to last place."""
+    manager = pywrapcp.RoutingIndexManager(len(times), 1, [0], [len(times) - 1])
     model = pywrapcp.RoutingModel(manager)
     whole = [[NO_LEG if leg is None else round(leg / UNIT) for leg in row] for row in times]
-    model.SetArcCostEvaluatorOfAllVehicles(model.RegisterTransitMatrix(whole))
+    transit = model.RegisterTransitMatrix(whole)
+    # Guided local search adds penalties to legs that cost something.
+    model.SetArcCostEvaluatorOfAllVehicles(transit)
+    return manager, model, transit
+
+
+def guided(first, limit):
+    """Parameters of guided local search from what a first strategy finds, for some seconds."""
     parameters = pywrapcp.DefaultRoutingSearchParameters()
-    first = routing_enums_pb2.FirstSolutionStrategy.PATH_CHEAPEST_ARC
-    search = routing_enums_pb2.LocalSearchMetaheuristic.GUIDED_LOCAL_SEARCH
     parameters.first_solution_strategy = first
-    parameters.local_search_metaheuristic = search
+    parameters.local_search_metaheuristic = routing_enums_pb2.LocalSearchMetaheuristic.GUIDED_LOCAL_SEARCH
     parameters.time_limit.FromMilliseconds(round(1000 * limit))
-    answer = model.SolveWithParameters(parameters)
+    return parameters
+
+
+def visited(manager, model, value):
+    """The places of a tour but the last; `value` gives what a variable is in it."""
+    index = model.Start(0)
+    while not model.IsEnd(index):
+        yield manager.IndexToNode(index)
+        index = value(model.NextVar(index))
+
+
+def by_routing(times, limit):
+    """The tour of OR-Tools, and the seconds it took."""
+    begin = time.perf_counter()
+    manager, model, _ = routing_model(times)
+    first = routing_enums_pb2.FirstSolutionStrategy.PATH_CHEAPEST_ARC
+    answer = model.SolveWithParameters(guided(first, limit))
     taken = time.perf_counter() - begin
     if answer is None:
         return None, taken
-    tour, at = [], model.Start(0)
-    while not model.IsEnd(at):
-        tour.append(manager.IndexToNode(at))
-        at = answer.Value(model.NextVar(at))
-    return [*tour, last], taken
+    return [*visited(manager, model, answer.Value), len(times) - 1], taken
 
 
 @dataclass

@@ -65,8 +65,11 @@ class Log:
 
 
 def processor_s(pid):
-    """Processor time of a process, s."""
-    fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    """Processor time of a process, s; none of one that has just ended."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    except (FileNotFoundError, ProcessLookupError):
+        return 0.0
     return TICK_S * (int(fields[11]) + int(fields[12]))
 
 

@@ -116,10 +116,10 @@ impl Continuations {
         }
     }
 
-    /// Worth of a target in whole units.
+    /// Worth of targets in whole units.
     #[must_use]
-    pub fn units_of(&self, target: usize) -> u64 {
-        self.worth.units[target]
+    pub fn units_of_all(&self, targets: &[usize]) -> u64 {
+        self.instance.worth(targets)
     }
 
     /// Whether so much worth includes that of all required targets.

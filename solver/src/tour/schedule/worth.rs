@@ -14,8 +14,8 @@ const DIGITS: f64 = 1e12;
 pub(super) struct Worth {
     /// Of each target.
     pub(super) units: Vec<u64>,
-    /// Value of a unit.
-    unit: f64,
+    /// The value of a unit is ten to this power.
+    exponent: i32,
     /// Of a required one; the optional ones together are worth less.
     required: u64,
 }
@@ -24,19 +24,17 @@ impl Worth {
     pub(super) fn of(targets: &[TimedTarget]) -> Self {
         let sum: f64 = targets.iter().filter_map(|target| target.value).sum();
         // The least power of ten that is not below the sum, some digits smaller.
-        let mut unit = 1e-300;
-        while unit * DIGITS < sum {
-            unit *= 10.0;
-        }
+        let exponent = (-300..=296).find(|exponent| times_ten_to(DIGITS, *exponent) >= sum);
+        let exponent = exponent.unwrap_or(296);
         // At least one, so that no value counts as nothing.
-        let optional = |value: f64| whole(value / unit).max(1);
+        let optional = |value: f64| whole(times_ten_to(value, -exponent)).max(1);
         let units = targets.iter().map(|target| target.value.map(optional));
         let units: Vec<Option<u64>> = units.collect();
         let required = 1 + units.iter().flatten().sum::<u64>();
         Self {
             units: units.into_iter().map(|u| u.unwrap_or(required)).collect(),
             required,
-            unit,
+            exponent,
         }
     }
 
@@ -58,7 +56,19 @@ impl Worth {
             // Less than all required targets: there is no schedule.
             return 0.0;
         }
-        (units % self.required) as f64 * self.unit
+        // No sum of worth is more than that of all targets, but a bound may be.
+        let optional = units.saturating_sub(self.required() * self.required);
+        times_ten_to(optional.min(self.required - 1) as f64, self.exponent)
+    }
+}
+
+/// A number times a power of ten. Powers below one are not exact, but their reciprocals are: whole numbers
+/// of units are the values again, to the last digit.
+fn times_ten_to(number: f64, exponent: i32) -> f64 {
+    if exponent < 0 {
+        number / 10_f64.powi(-exponent)
+    } else {
+        number * 10_f64.powi(exponent)
     }
 }
 
@@ -70,4 +80,28 @@ impl Worth {
 )]
 fn whole(units: f64) -> u64 {
     units.round() as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bound_above_all_worth_is_the_sum_of_all_values() {
+        let target = |value| TimedTarget {
+            service_s: 0.0,
+            windows: None,
+            value,
+        };
+        for required in [0, 1, 3] {
+            let mut targets = vec![target(Some(2.0)), target(Some(5.0))];
+            targets.resize(2 + required, target(None));
+            let worth = Worth::of(&targets);
+            let all: u64 = worth.units.iter().sum();
+            for bound in [all, all + 1, u64::MAX] {
+                assert_eq!(worth.value_of(bound).to_string(), "7");
+            }
+            assert_eq!(worth.value_of(all - worth.units[0]).to_string(), "5");
+        }
+    }
 }

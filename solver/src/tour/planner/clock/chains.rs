@@ -193,6 +193,9 @@ impl Chain<'_> {
 
     /// The motion of the program that keeps bounds of time, from the free motion or, where that does not
     /// converge, from one that is slow enough.
+    ///
+    /// The last place has no latest time there: where the earliest is too late, that is the proof, which a
+    /// program without solutions would not give.
     fn clocked(&self, free: &LegSolution) -> Result<SolvedChain, NoChain> {
         let first = self.clocked_from(free, &free.profile);
         match first {
@@ -222,6 +225,11 @@ impl Chain<'_> {
         }
         let delay = (solution.begin - self.departure).max(0.0);
         let begins = self.begins(&motion, self.departure + delay);
+        let last = begins.len() - 1;
+        let is_least = motion.status == NlpStatus::Converged;
+        if is_least && self.lateness(last, begins[last] * (1.0 - 2.0 * INSIDE)) > 0.0 {
+            return Err(NoChain::TooLate);
+        }
         if !self.keeps_windows(&begins) {
             return Err(NoChain::Unresolved);
         }
@@ -262,7 +270,12 @@ impl Chain<'_> {
             let from = if waits { 0.0 } else { window[0] };
             // Late by less than the accuracy of the program is inside.
             let inside = INSIDE * window[1].min(window[0].abs() + 1.0);
-            let bounds = [from + INSIDE * from - served, window[1] - inside - served];
+            let to = if i == last {
+                f64::INFINITY
+            } else {
+                window[1] - inside
+            };
+            let bounds = [from + INSIDE * from - served, to - served];
             served += service;
             bounds
         });

@@ -15,7 +15,7 @@ use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use crate::tour::order::Place;
 use crate::tour::planner::tours::Tours;
-use crate::tour::schedule::{Beginning, Continuations, Rank};
+use crate::tour::schedule::{Beginning, Continuations, Rank, TimedResult};
 use node::{Choice, Node};
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap};
@@ -63,12 +63,20 @@ pub(super) struct CoupledSearch<'a> {
 }
 
 impl<'a> CoupledSearch<'a> {
-    /// A search with only the beginning without visits.
+    /// A search with only the beginning without visits, for the problem that a search on times of single
+    /// legs has relaxed.
     pub(super) fn new(
         tours: &'a Tours<'a>,
         (pool, stop): (&'a SolverPool, &'a StopSignal),
-        continuations: Continuations,
+        (continuations, relaxed): (Continuations, &TimedResult),
     ) -> Self {
+        let bound = match &relaxed.best {
+            Some(best) if relaxed.complete => Rank {
+                units: continuations.units_of_all(&best.order),
+                end_s: relaxed.end_bound_s,
+            },
+            _ => Rank::BEST,
+        };
         let mut search = Self {
             tours,
             pool,
@@ -76,14 +84,14 @@ impl<'a> CoupledSearch<'a> {
             continuations,
             best: None,
             frontier: BinaryHeap::new(),
-            working: Some(Rank::BEST),
+            working: Some(bound),
             is_about_time: false,
             solved: HashMap::new(),
             departures: HashMap::new(),
             given_up: None,
             nodes: 0,
         };
-        if let Some((root, _)) = search.bounded(Node::root()) {
+        if let Some((root, _)) = search.bounded(Node::root(bound)) {
             search.frontier.push(root);
         }
         search.working = None;
@@ -177,10 +185,8 @@ impl<'a> CoupledSearch<'a> {
 
     /// Solves a whole schedule. Where that is not decided, schedules as good as the bound may be missed.
     fn try_whole(&mut self, choices: &[Choice], bound: Option<Rank>) -> bool {
-        let units = choices
-            .iter()
-            .map(|choice| self.continuations.units_of(choice.target))
-            .sum();
+        let order: Vec<usize> = choices.iter().map(|choice| choice.target).collect();
+        let units = self.continuations.units_of_all(&order);
         if !self.continuations.is_whole(units) {
             return false;
         }
@@ -211,7 +217,6 @@ impl<'a> CoupledSearch<'a> {
             .as_ref()
             .is_none_or(|best| rank.compare(&best.rank) == Ordering::Greater);
         if better {
-            let order = choices.iter().map(|choice| choice.target).collect();
             self.best = Some(CoupledSchedule {
                 order,
                 chains,
@@ -328,10 +333,7 @@ impl<'a> CoupledSearch<'a> {
             None => 0.0,
         };
         let ends_here = Rank {
-            units: order
-                .iter()
-                .map(|target| self.continuations.units_of(*target))
-                .sum(),
+            units: self.continuations.units_of_all(&order),
             end_s: node.departure + to_end,
         };
         self.try_whole(&node.visits, Some(ends_here));

@@ -34,8 +34,8 @@ impl Planning<'_> {
             return self.conclude(&relaxed, None);
         }
         let continuations = Continuations::new(&self.problem, &times);
-        let mut programs =
-            CoupledSearch::new(self.tours, (self.run.pool, self.stop), continuations);
+        let from = (continuations, &relaxed);
+        let mut programs = CoupledSearch::new(self.tours, (self.run.pool, self.stop), from);
         self.find_first_schedules(&mut programs, &relaxed);
         let mut known = programs.rank();
         while programs.step() {

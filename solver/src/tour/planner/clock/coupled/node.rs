@@ -42,10 +42,10 @@ pub(super) struct Node {
 }
 
 impl Node {
-    /// The beginning without visits.
-    pub(super) fn root() -> Self {
+    /// The beginning without visits, with a bound on all schedules.
+    pub(super) fn root(bound: Rank) -> Self {
         Self {
-            bound: Rank::BEST,
+            bound,
             visits: Vec::new(),
             departure: 0.0,
             anchor: (0, 0.0),

@@ -8,21 +8,29 @@
 //! that ends first (an orienteering problem with time windows). Where legs take longer than the given
 //! times, the answers are an upper bound on the value and a lower bound on the time.
 //!
+//! Bounds on the times of two legs together hold from the departure before the first to the arrival after
+//! the second: where they are known, the arrivals are no earlier ([`TravelTimes::coupling_gaps_s`]).
+//!
 //! # Labels
 //!
 //! A label is a beginning: its last target, when that visit begins, the worth of its targets, and which
 //! targets cannot follow. It dominates another with the same last target that begins no earlier, is
-//! worth no more and bars at least the same targets. With all barred targets kept in mind labels are
-//! exact; a label that keeps only those near each target in mind (ng-routes: Baldacci, Mingozzi and
-//! Roberti 2011) may visit a target twice, of which there are far fewer, and its best path bounds all
-//! schedules. What the best path did wrong is then kept in mind (decremental state space relaxation:
-//! Righini and Salani 2009), and labels run in the other direction, from the end back to the start,
-//! with the bounds of the last run to discard all that cannot reach the goal.
+//! worth no more and bars at least the same targets. Where legs couple, it has to begin earlier by the
+//! most that the coupling may delay what follows, or to come from the same target and have left that no
+//! later.
+//!
+//! With all barred targets kept in mind labels are exact; a label that keeps only those near each target
+//! in mind (ng-routes: Baldacci, Mingozzi and Roberti 2011) may visit a target twice, of which there are
+//! far fewer, and its best path bounds all schedules. What the best path did wrong is then kept in mind
+//! (decremental state space relaxation: Righini and Salani 2009), and labels run in the other direction,
+//! from the end back to the start, with the bounds of the last run to discard all that cannot reach the
+//! goal.
 //!
 //! First the goal is more worth than that of the best known schedule, then an earlier end with the
 //! same worth. A run that ends without a path is the proof.
 
 mod continuations;
+mod coupling_gaps;
 mod instance;
 mod labels;
 mod local_search;
@@ -85,7 +93,7 @@ impl TimedProblem {
 }
 
 impl TimedProblem {
-    /// The schedule of an order, each visit as early as possible; `None` where it breaks a window, a rule or
+    /// The schedule of an order, each visit as early as the legs on their own allow; `None` where it breaks a window, a rule or
     /// the latest end.
     #[must_use]
     pub fn schedule_of(
@@ -138,6 +146,12 @@ impl TimedProblem {
 pub trait TravelTimes {
     /// Time, s, of the leg between two places, not negative; infinite where there is none.
     fn travel_s(&self, from: Place, to: Place) -> f64;
+
+    /// By how much, s, the legs between three places take longer together than each on its own, where
+    /// that is known and more than nothing.
+    fn coupling_gaps_s(&self) -> Vec<([Place; 3], f64)> {
+        Vec::new()
+    }
 }
 
 impl<F: Fn(Place, Place) -> f64> TravelTimes for F {

@@ -10,11 +10,13 @@
 //! with bounds on all others.
 //!
 //! Where rates are free at targets, legs couple, and there is nowhere to wait: motions pass
-//! their targets within bounds of time, and a branch and bound solves their programs.
+//! their targets within bounds of time, and a branch and bound solves their programs. It begins with
+//! bounds on what legs in a row lose together.
 
 mod additive;
 mod chains;
 mod coupled;
+mod coupled_times;
 mod explanation;
 mod problem;
 mod skipped;

@@ -1,9 +1,11 @@
 //! A problem in numbers, as labels need it: forward in time, or backward from the end.
 
+use super::coupling_gaps::CouplingGaps;
 use super::target_set::TargetSet;
 use super::worth::Worth;
 use super::{TimedProblem, TravelTimes};
 use crate::tour::order::Place;
+use std::sync::Arc;
 
 /// Share of the horizon by which sums of times may differ by rounding.
 pub(super) const ROUNDING: f64 = 1e-12;
@@ -17,6 +19,7 @@ pub(super) struct Instance {
     pub(super) horizon: f64,
     /// Times of the legs, s: row by row from the start, the targets and the end.
     travel: Vec<f64>,
+    gaps: Arc<CouplingGaps>,
     /// Durations of visits, s.
     pub(super) service: Vec<f64>,
     /// Spans of time, s, in which a visit of each target may begin, in order of time.
@@ -32,6 +35,29 @@ pub(super) struct Instance {
     /// For the start and every target: the latest departures, s, in ascending order, with which other
     /// targets can still be reached, and the targets that cannot after each of them.
     too_late: Vec<(Vec<f64>, Vec<TargetSet>)>,
+}
+
+/// The departure from a place, and what of the leg before it bears on the next one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Departure {
+    /// The place before it.
+    pub(super) before: usize,
+    pub(super) place: usize,
+    pub(super) time: f64,
+    /// By how much later than the leg on its own allows the visit began, s.
+    pub(super) waited: f64,
+}
+
+impl Departure {
+    /// A departure that does not depend on what was before.
+    pub(super) fn first(place: usize, time: f64) -> Self {
+        Self {
+            before: place,
+            place,
+            time,
+            waited: f64::INFINITY,
+        }
+    }
 }
 
 impl Instance {
@@ -55,6 +81,16 @@ impl Instance {
                 }
             }
         }
+        let number = |place: Place| match place {
+            Place::Start => 0,
+            Place::Target(target) => target + 1,
+            Place::End => count + 1,
+        };
+        let gaps = times.coupling_gaps_s().into_iter();
+        let gaps = gaps.filter(|(triple, _)| problem.has_end || triple[2] != Place::End);
+        let gaps: Vec<_> = gaps
+            .map(|(triple, gap)| (triple.map(number), gap))
+            .collect();
         let service: Vec<f64> = problem.targets.iter().map(|t| t.service_s).collect();
         let windows = problem.targets.iter().zip(&service);
         let begins = windows.map(|(target, service)| {
@@ -75,6 +111,7 @@ impl Instance {
             count,
             horizon: f64::INFINITY,
             travel,
+            gaps: Arc::new(CouplingGaps::new(count + 2, &gaps)),
             begins: begins.collect(),
             service,
             units: worth.units.clone(),
@@ -94,12 +131,17 @@ impl Instance {
     fn longest(&self) -> f64 {
         let opens = self.begins.iter().flatten().map(|span| span[0]);
         let last_opening = opens.fold(0.0, f64::max);
-        // From then on nothing waits: each target takes a leg to it and its service.
+        // From then on nothing waits: each target takes a leg to it, its service and its coupling.
         let legs = (1..self.count + 2).map(|to| {
             let legs = (0..=self.count).map(|from| self.leg(from, to));
             legs.filter(|leg| leg.is_finite()).fold(0.0, f64::max)
         });
-        last_opening + legs.sum::<f64>() + self.service.iter().sum::<f64>()
+        let delays = (1..=self.count).map(|via| {
+            let gaps = (0..=self.count).map(|from| self.gaps.largest(from, via));
+            gaps.fold(0.0, f64::max)
+        });
+        let services = self.service.iter().sum::<f64>();
+        last_opening + legs.sum::<f64>() + services + delays.sum::<f64>()
     }
 
     /// The same up to an earlier horizon.
@@ -188,6 +230,7 @@ impl Instance {
         };
         let mut instance = Self {
             travel,
+            gaps: Arc::new(self.gaps.mirrored(other)),
             begins: (0..self.count).map(mirrored).collect(),
             barred: self.barred_before.clone(),
             barred_before: self.barred.clone(),
@@ -206,6 +249,32 @@ impl Instance {
     /// Time of the leg from a place to the end, s.
     pub(super) fn leg_to_end(&self, from: usize) -> f64 {
         self.leg(from, self.count + 1)
+    }
+
+    /// The earliest arrival at a place after a departure, s.
+    pub(super) fn arrival(&self, from: &Departure, to: usize) -> f64 {
+        let gap = self.gaps.of([from.before, from.place, to]);
+        from.time + self.leg(from.place, to) + (gap - from.waited).max(0.0)
+    }
+
+    /// The earliest arrival at the end after a departure, s.
+    pub(super) fn arrival_at_end(&self, from: &Departure) -> f64 {
+        self.arrival(from, self.count + 1)
+    }
+
+    /// The departure after a visit of a target that begins at some time, s, after another departure.
+    pub(super) fn departure(&self, from: &Departure, target: usize, begin: f64) -> Departure {
+        Departure {
+            before: from.place,
+            place: target + 1,
+            time: begin + self.service[target],
+            waited: begin - (from.time + self.leg(from.place, target + 1)),
+        }
+    }
+
+    /// By how much the coupling of the leg before a departure delays the next arrival at most, s.
+    pub(super) fn longest_delay(&self, from: &Departure) -> f64 {
+        (self.gaps.largest(from.before, from.place) - from.waited).max(0.0)
     }
 
     /// Whether a visit can begin at some time.
@@ -236,7 +305,7 @@ impl Instance {
     /// When the visits of an order begin, and when it ends, s; `None` where it breaks a window, a rule
     /// or the horizon.
     pub(super) fn follow(&self, order: &[usize]) -> Option<(Vec<f64>, f64)> {
-        let (mut at, mut time) = (0, 0.0);
+        let mut departure = Departure::first(0, 0.0);
         let mut barred = TargetSet::default();
         let mut begins = Vec::with_capacity(order.len());
         for (place, &target) in order.iter().enumerate() {
@@ -245,11 +314,11 @@ impl Instance {
                 return None;
             }
             barred = barred.or(&self.barred[target]);
-            let begin = self.begin_after(target, time + self.leg(at, target + 1))?;
+            let begin = self.begin_after(target, self.arrival(&departure, target + 1))?;
             begins.push(begin);
-            (at, time) = (target + 1, begin + self.service[target]);
+            departure = self.departure(&departure, target, begin);
         }
-        let end = time + self.leg_to_end(at);
+        let end = self.arrival_at_end(&departure);
         (end <= self.horizon * (1.0 + ROUNDING)).then_some((begins, end))
     }
 

@@ -1,6 +1,6 @@
 //! Labels, from one end of the schedule to the other, in order of time.
 
-use super::instance::{Instance, ROUNDING};
+use super::instance::{Departure, Instance, ROUNDING};
 use super::route_memory::RouteMemory;
 use super::target_set::TargetSet;
 use std::cmp::Ordering;
@@ -49,12 +49,27 @@ struct Label {
     visits: usize,
     /// When the last visit begins, s.
     begin: f64,
+    /// The departure from it.
+    departure: Departure,
+    /// By how much a coupling may delay the next visit, s.
+    delay: f64,
     units: u64,
     /// Targets visited, as far as kept in mind.
     visited: TargetSet,
     /// Targets that cannot follow, as far as kept in mind.
     barred: TargetSet,
     dominated: bool,
+}
+
+impl Label {
+    /// Whether all that may follow another label of the same target may follow this one no later.
+    fn is_no_later_than(&self, other: &Self) -> bool {
+        let (mine, others) = (&self.departure, &other.departure);
+        self.begin + self.delay <= other.begin
+            || mine.before == others.before
+                && self.begin <= other.begin
+                && self.begin - mine.waited <= other.begin - others.waited
+    }
 }
 
 /// Where all paths begin.
@@ -73,12 +88,12 @@ pub(super) struct Root {
 }
 
 /// A path so far, at the departure from its last place.
-struct Departure {
+struct Beginning {
     /// Index of its label.
     parent: usize,
     visits: usize,
     units: u64,
-    time: f64,
+    departure: Departure,
     visited: TargetSet,
     barred: TargetSet,
 }
@@ -165,14 +180,15 @@ impl Labels<'_> {
     /// Labels of all first targets, and the path without targets.
     fn begin(&mut self, offer: &mut dyn FnMut(&Path)) {
         let root = self.root;
-        let end = root.departure + self.instance.leg_to_end(root.place);
+        let departure = Departure::first(root.place, root.departure);
+        let end = self.instance.arrival_at_end(&departure);
         self.finish(NONE, (root.units, end), offer);
         let out_of_reach = self.instance.out_of_reach(root.place, root.departure);
-        let from_start = Departure {
+        let from_start = Beginning {
             parent: NONE,
             visits: root.visits,
             units: root.units,
-            time: root.departure,
+            departure,
             visited: root.visited,
             barred: root.barred.or(out_of_reach),
         };
@@ -183,37 +199,33 @@ impl Labels<'_> {
 
     fn extend(&mut self, index: usize, offer: &mut dyn FnMut(&Path)) {
         let label = &self.all[index];
-        let departure = Departure {
+        let beginning = Beginning {
             parent: index,
             visits: label.visits,
             units: label.units,
-            time: label.begin + self.instance.service[label.target],
+            departure: label.departure,
             visited: label.visited,
             barred: label.barred,
         };
-        let end = departure.time + self.instance.leg_to_end(label.target + 1);
-        self.finish(index, (departure.units, end), offer);
+        let end = self.instance.arrival_at_end(&beginning.departure);
+        self.finish(index, (beginning.units, end), offer);
         for target in 0..self.instance.count {
-            self.visit(target, &departure);
+            self.visit(target, &beginning);
         }
     }
 
     /// Goes on to a target, if it can follow.
-    fn visit(&mut self, target: usize, from: &Departure) {
+    fn visit(&mut self, target: usize, from: &Beginning) {
         let instance = self.instance;
         let position = instance.positions[target];
         if from.barred.contains(target) || position.is_some_and(|place| place != from.visits) {
             return;
         }
-        let place = self
-            .all
-            .get(from.parent)
-            .map_or(self.root.place, |label| label.target + 1);
-        let arrival = from.time + instance.leg(place, target + 1);
+        let arrival = instance.arrival(&from.departure, target + 1);
         let Some(begin) = instance.begin_after(target, arrival) else {
             return;
         };
-        let departure = begin + instance.service[target];
+        let departure = instance.departure(&from.departure, target, begin);
         let known = self.memory.at(target);
         let mut visited = from.visited.and(known).or(&self.root.visited);
         visited.insert(target);
@@ -222,6 +234,8 @@ impl Labels<'_> {
             parent: from.parent,
             visits: from.visits + 1,
             begin,
+            delay: instance.longest_delay(&departure),
+            departure,
             units: from.units + instance.units[target],
             visited,
             barred: from
@@ -229,7 +243,7 @@ impl Labels<'_> {
                 .and(known)
                 .or(&self.root.barred)
                 .or(&instance.barred[target])
-                .or(instance.out_of_reach(target + 1, departure)),
+                .or(instance.out_of_reach(target + 1, departure.time)),
             dominated: false,
         };
         if self.may_reach_the_goal(&label) {
@@ -250,7 +264,7 @@ impl Labels<'_> {
     fn keep(&mut self, label: Label) {
         let counted = self.instance.positions.iter().any(Option::is_some);
         let dominates = |a: &Label, b: &Label| {
-            a.begin <= b.begin
+            a.is_no_later_than(b)
                 && a.units >= b.units
                 && a.barred.is_subset(&b.barred)
                 && (!counted || a.visits == b.visits)

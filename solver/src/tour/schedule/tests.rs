@@ -2,10 +2,30 @@
 
 use super::*;
 use crate::math::random::SplitMix;
+use std::collections::HashMap;
 
 struct Case {
     problem: TimedProblem,
     travel: Vec<Vec<f64>>,
+    /// Coupling gaps of triples of places, by their numbers; none in two cases of three.
+    gaps: HashMap<[usize; 3], f64>,
+}
+
+impl TravelTimes for Case {
+    fn travel_s(&self, from: Place, to: Place) -> f64 {
+        self.travel[self.number(from)][self.number(to)]
+    }
+
+    fn coupling_gaps_s(&self) -> Vec<([Place; 3], f64)> {
+        let place = |number: usize| match number {
+            0 => Place::Start,
+            number if number == self.travel.len() - 1 => Place::End,
+            number => Place::Target(number - 1),
+        };
+        let gaps = self.gaps.iter();
+        gaps.map(|(triple, gap)| (triple.map(place), *gap))
+            .collect()
+    }
 }
 
 impl Case {
@@ -43,6 +63,15 @@ impl Case {
             positions[count - 1] = Some(whole(0, count - 1));
         }
         let latest = whole(0, 40);
+        let mut gaps = HashMap::new();
+        if whole(0, 2) == 0 {
+            for _ in 0..count * count {
+                let [from, via, to] = [whole(0, count), whole(1, count), whole(1, count + 1)];
+                if from != via && via != to && to != from {
+                    gaps.insert([from, via, to], whole(1, 5) as f64);
+                }
+            }
+        }
         Self {
             problem: TimedProblem {
                 targets,
@@ -51,29 +80,42 @@ impl Case {
                 latest_end_s: (latest > 8).then_some(latest as f64),
             },
             travel,
+            gaps,
         }
     }
 
-    fn time(&self, from: Place, to: Place) -> f64 {
-        let index = |place| match place {
+    fn number(&self, place: Place) -> usize {
+        match place {
             Place::Start => 0,
             Place::Target(target) => 1 + target,
             Place::End => self.travel.len() - 1,
+        }
+    }
+
+    /// The earliest arrival after the departures from all places so far.
+    fn arrival(&self, left: &[(Place, f64)], service: f64, to: Place) -> f64 {
+        let (at, time) = left[left.len() - 1];
+        let arrival = time + self.travel_s(at, to);
+        let Some(&[(before, departure), _]) = left.last_chunk() else {
+            return arrival;
         };
-        self.travel[index(from)][index(to)]
+        let gap = self.gaps.get(&[before, at, to].map(|p| self.number(p)));
+        let alone = self.travel_s(before, at) + service + self.travel_s(at, to);
+        arrival.max(departure + alone + gap.unwrap_or(&0.0))
     }
 
     /// When an order ends, if it is admitted: by the rules, the windows and the latest end.
     fn end(&self, order: &[usize]) -> Option<f64> {
         let problem = &self.problem;
-        let (mut at, mut time) = (Place::Start, 0.0);
+        let mut left = vec![(Place::Start, 0.0)];
+        let mut served = 0.0;
         for (place, &target) in order.iter().enumerate() {
             let misplaced = problem.rules.position(target).is_some_and(|p| p != place);
             let later = |before: &usize| order[place..].contains(before);
             if misplaced || problem.rules.predecessors(target).iter().any(later) {
                 return None;
             }
-            let arrival = time + self.time(at, Place::Target(target));
+            let arrival = self.arrival(&left, served, Place::Target(target));
             let TimedTarget {
                 service_s, windows, ..
             } = &problem.targets[target];
@@ -85,11 +127,14 @@ impl Case {
                     fitting.next().map(|(begin, _)| begin)
                 }
             };
-            (at, time) = (Place::Target(target), begin? + service_s);
+            left.push((Place::Target(target), begin? + service_s));
+            served = *service_s;
         }
-        if problem.has_end {
-            time += self.time(at, Place::End);
-        }
+        let time = if problem.has_end {
+            self.arrival(&left, served, Place::End)
+        } else {
+            left[left.len() - 1].1
+        };
         problem
             .latest_end_s
             .is_none_or(|latest| time <= latest)
@@ -108,10 +153,10 @@ impl Case {
         let targets = &self.problem.targets;
         let missing = |i: &usize| targets[*i].value.is_none() && !order.contains(i);
         let end = self.end(order);
-        let schedule = self
-            .problem
-            .schedule_of(order, &|from, to| self.time(from, to));
-        assert_eq!(schedule.map(|schedule| schedule.end_s), end, "{order:?}");
+        if self.gaps.is_empty() {
+            let schedule = self.problem.schedule_of(order, self);
+            assert_eq!(schedule.map(|schedule| schedule.end_s), end, "{order:?}");
+        }
         if !(0..targets.len()).any(|i| missing(&i))
             && let Some(end) = end
         {
@@ -148,10 +193,9 @@ fn searches_find_what_enumeration_finds() {
     let (mut infeasible, mut partial) = (0, 0);
     for seed in 0..3000 {
         let case = Case::random(seed);
-        let times = |from, to| case.time(from, to);
         let found = search(
             &case.problem,
-            &times,
+            &case,
             SearchLimits::default(),
             &never,
             &mut |_| (),
@@ -164,9 +208,10 @@ fn searches_find_what_enumeration_finds() {
         assert_eq!(
             best,
             case.best(),
-            "{seed}: {:?} {:?}",
+            "{seed}: {:?} {:?} {:?}",
             case.problem,
-            case.travel
+            case.travel,
+            case.gaps
         );
         if let Some(best) = found.best {
             assert_eq!(case.end(&best.order), Some(best.end_s), "{seed}");
@@ -184,10 +229,9 @@ fn searches_find_what_enumeration_finds() {
 fn bounds_hold_at_every_moment_and_wider_windows_lose_no_value() {
     for seed in 0..300 {
         let case = Case::random(seed);
-        let times = |from, to| case.time(from, to);
         let mut reports = Vec::new();
         let limits = SearchLimits::default();
-        let found = search(&case.problem, &times, limits, &never, &mut |report| {
+        let found = search(&case.problem, &case, limits, &never, &mut |report| {
             reports.push(report.clone());
         });
         let Some(best) = found.best else { continue };
@@ -203,7 +247,7 @@ fn bounds_hold_at_every_moment_and_wider_windows_lose_no_value() {
         for target in &mut wider.targets {
             target.windows = None;
         }
-        let wider = search(&wider, &times, limits, &never, &mut |_| ());
+        let wider = search(&wider, &case, limits, &never, &mut |_| ());
         assert!(
             wider
                 .best

@@ -98,6 +98,15 @@ impl<'a> CoupledSearch<'a> {
         search
     }
 
+    /// A search with other bounds that knows the schedules of this one, of which no node has been opened.
+    pub(super) fn tightened(self, bounds: (Continuations, &TimedResult)) -> Self {
+        let mut search = Self::new(self.tours, (self.pool, self.stop), bounds);
+        search.best = self.best;
+        search.solved = self.solved;
+        search.narrow();
+        search
+    }
+
     /// Bound on all schedules; `None` where there is none.
     pub(super) fn bound(&self) -> Option<Rank> {
         let known = self.best.as_ref().map(|best| best.rank);

@@ -2,6 +2,7 @@
 
 use super::Planning;
 use super::coupled::CoupledSearch;
+use super::coupled_times::CoupledTimes;
 use crate::model::plan::Outcome;
 use crate::run::progress::Stage;
 use crate::tour::order::{Place, TourModel};
@@ -29,14 +30,16 @@ impl Planning<'_> {
         self.solve_all_legs();
         let times = |from, to| self.time_s(from, to);
         let stop = || self.stop.is_set();
-        let relaxed = search(&self.problem, &times, self.limits, &stop, &mut |_| ());
-        if relaxed.best.is_none() {
-            return self.conclude(&relaxed, None);
+        let single = search(&self.problem, &times, self.limits, &stop, &mut |_| ());
+        if single.best.is_none() {
+            return self.conclude(&single, None);
         }
-        let continuations = Continuations::new(&self.problem, &times);
-        let from = (continuations, &relaxed);
+        let from = (Continuations::new(&self.problem, &times), &single);
         let mut programs = CoupledSearch::new(self.tours, (self.run.pool, self.stop), from);
-        self.find_first_schedules(&mut programs, &relaxed);
+        self.find_first_schedules(&mut programs, &single);
+        let (times, relaxed) = CoupledTimes::learned(&self, single);
+        let from = (Continuations::new(&self.problem, &times), &relaxed);
+        let mut programs = programs.tightened(from);
         let mut known = programs.rank();
         while programs.step() {
             let state = self.state(&programs, &relaxed);

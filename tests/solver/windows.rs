@@ -5,6 +5,7 @@ use slewplan_solver::model::plan::{Optimality, Outcome, SkipReason};
 use slewplan_solver::model::problem::Code;
 use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, TargetSpec, WindowSpec};
 use slewplan_tests::experiment_a_spec;
+use slewplan_tests::schedules::{Pass, RateConditions, pass};
 use slewplan_tests::solving::outcome_of;
 use slewplan_tests::windows::{Rates, best_by_enumeration, random_windows, standing};
 
@@ -24,6 +25,22 @@ fn schedules_with_free_rates_are_those_of_enumeration() {
         planned += usize::from(agrees(seed, 4, Rates::Any));
     }
     assert!(planned > 1, "{planned}");
+}
+
+#[test]
+fn beginnings_that_end_too_late_do_not_leave_a_pass_without_proof() {
+    // Most of the beginnings of this pass arrive at some target after its window.
+    let spec = pass(Pass {
+        rates: RateConditions::ZeroAboutZ,
+        targets: 12,
+        duration_s: 600.0,
+        seed: 3,
+    });
+    let Outcome::Planned(plan) = outcome_of(&spec) else {
+        panic!("no plan");
+    };
+    assert_eq!(plan.optimality, Optimality::Optimal);
+    assert!(plan.lower_bound_s <= plan.total_time_s && plan.verification.passed);
 }
 
 /// Whether there is a schedule; it is compared with enumeration.

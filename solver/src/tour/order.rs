@@ -88,6 +88,18 @@ pub enum Place {
     End,
 }
 
+impl Place {
+    /// The number in tables of so many places: the start comes first and the end last.
+    #[must_use]
+    pub const fn number(self, places: usize) -> usize {
+        match self {
+            Self::Start => 0,
+            Self::Target(index) => 1 + index,
+            Self::End => places - 1,
+        }
+    }
+}
+
 /// Answer of [`TourModel::prefix_bound`] and [`TourModel::path_bound`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Evaluation {

@@ -160,7 +160,7 @@ impl<T> Table<T> {
     /// Sets the entry of the leg between two places.
     pub(super) fn set(&mut self, (from, to): (Place, Place), entry: Option<T>) {
         let to = number(to, self.places);
-        let row = &mut self.rows[index(from, self.places)];
+        let row = &mut self.rows[from.number(self.places)];
         match (row.binary_search_by_key(&to, |entry| entry.0), entry) {
             (Ok(at), Some(entry)) => row[at].1 = entry,
             (Ok(at), None) => _ = row.remove(at),
@@ -171,22 +171,14 @@ impl<T> Table<T> {
 
     /// The entry of the leg between two places, when there is one.
     pub(super) fn get(&self, from: Place, to: Place) -> Option<&T> {
-        let row = &self.rows[index(from, self.places)];
+        let row = &self.rows[from.number(self.places)];
         let to = number(to, self.places);
         let at = row.binary_search_by_key(&to, |entry| entry.0).ok()?;
         Some(&row[at].1)
     }
 }
 
-fn index(place: Place, places: usize) -> usize {
-    match place {
-        Place::Start => 0,
-        Place::Target(i) => 1 + i,
-        Place::End => places - 1,
-    }
-}
-
-/// The same in the width of an entry.
+/// The number of a place in the width of an entry.
 fn number(place: Place, places: usize) -> u32 {
-    u32::try_from(index(place, places)).expect("fewer places than 2^32")
+    u32::try_from(place.number(places)).expect("fewer places than 2^32")
 }

@@ -7,6 +7,7 @@ use super::target_set::TargetSet;
 use super::worth::Worth;
 use super::{TimedProblem, TravelTimes};
 use std::cmp::Ordering;
+use std::sync::OnceLock;
 
 /// Greatest number of targets whose labels keep every target in mind.
 const MAX_EXACT: usize = 20;
@@ -62,7 +63,8 @@ pub struct Continuations {
     memory: RouteMemory,
     worth: Worth,
     least_units: u64,
-    ends: Option<Completions>,
+    /// Bounds on all ends, made when they are first needed; `None` where that took too long.
+    ends: OnceLock<Option<Completions>>,
 }
 
 impl Continuations {
@@ -76,37 +78,33 @@ impl Continuations {
         } else {
             RouteMemory::nearest(&instance)
         };
-        let mut bounds = Self {
+        Self {
             instance,
             memory,
             worth,
             least_units: 0,
-            ends: None,
-        };
-        bounds.bound_ends();
-        bounds
+            ends: OnceLock::new(),
+        }
     }
 
     /// The same for schedules of at least so much worth that end before a time, s.
     #[must_use]
     pub fn narrowed(&self, least_units: u64, before_s: f64) -> Self {
-        let mut narrowed = Self {
+        Self {
             instance: self.instance.until(before_s.min(self.instance.horizon)),
             memory: self.memory.clone(),
             worth: self.worth.clone(),
             least_units,
-            ends: None,
-        };
-        narrowed.bound_ends();
-        narrowed
+            ends: OnceLock::new(),
+        }
     }
 
-    fn bound_ends(&mut self) {
+    fn bounds_on_ends(&self) -> Option<Completions> {
         let mirrored = self.instance.mirrored();
         let limits: (u64, &dyn Fn() -> bool) = (LABELS_OF_ENDS, &|| false);
         let all = (&mirrored, Root::default());
         let found = run(all, &self.memory, None, self.goal(), limits, &mut |_| ());
-        self.ends = found.complete.then_some(found.completions);
+        found.complete.then_some(found.completions)
     }
 
     fn goal(&self) -> Goal {
@@ -152,7 +150,7 @@ impl Continuations {
         let root = self.root(beginning);
         let limits: (u64, &dyn Fn() -> bool) = (LABELS_OF_ONE, &|| false);
         let from = (&self.instance, root);
-        let ends = self.ends.as_ref();
+        let ends = self.ends.get_or_init(|| self.bounds_on_ends()).as_ref();
         let found = run(from, &self.memory, ends, self.goal(), limits, &mut |_| ());
         if !found.complete {
             return Some(Continuation {

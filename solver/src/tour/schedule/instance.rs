@@ -81,15 +81,10 @@ impl Instance {
                 }
             }
         }
-        let number = |place: Place| match place {
-            Place::Start => 0,
-            Place::Target(target) => target + 1,
-            Place::End => count + 1,
-        };
         let gaps = times.coupling_gaps_s().into_iter();
         let gaps = gaps.filter(|(triple, _)| problem.has_end || triple[2] != Place::End);
         let gaps: Vec<_> = gaps
-            .map(|(triple, gap)| (triple.map(number), gap))
+            .map(|(triple, gap)| (triple.map(|place| place.number(count + 2)), gap))
             .collect();
         let service: Vec<f64> = problem.targets.iter().map(|t| t.service_s).collect();
         let windows = problem.targets.iter().zip(&service);
@@ -246,11 +241,6 @@ impl Instance {
         self.travel[from * (self.count + 2) + to]
     }
 
-    /// Time of the leg from a place to the end, s.
-    pub(super) fn leg_to_end(&self, from: usize) -> f64 {
-        self.leg(from, self.count + 1)
-    }
-
     /// The earliest arrival at a place after a departure, s.
     pub(super) fn arrival(&self, from: &Departure, to: usize) -> f64 {
         let gap = self.gaps.of([from.before, from.place, to]);
@@ -302,12 +292,13 @@ impl Instance {
         &sets[departures.partition_point(|latest| *latest < departure)]
     }
 
-    /// When the visits of an order begin, and when it ends, s; `None` where it breaks a window, a rule
-    /// or the horizon.
-    pub(super) fn follow(&self, order: &[usize]) -> Option<(Vec<f64>, f64)> {
+    /// When the visits of an order begin, s, the departures before each and to the end, and when it ends,
+    /// s; `None` where it breaks a window, a rule or the horizon.
+    pub(super) fn follow(&self, order: &[usize]) -> Option<(Vec<f64>, Vec<Departure>, f64)> {
         let mut departure = Departure::first(0, 0.0);
         let mut barred = TargetSet::default();
         let mut begins = Vec::with_capacity(order.len());
+        let mut departures = Vec::with_capacity(order.len() + 1);
         for (place, &target) in order.iter().enumerate() {
             let misplaced = self.positions[target].is_some_and(|position| position != place);
             if misplaced || barred.contains(target) {
@@ -316,10 +307,12 @@ impl Instance {
             barred = barred.or(&self.barred[target]);
             let begin = self.begin_after(target, self.arrival(&departure, target + 1))?;
             begins.push(begin);
+            departures.push(departure);
             departure = self.departure(&departure, target, begin);
         }
+        departures.push(departure);
         let end = self.arrival_at_end(&departure);
-        (end <= self.horizon * (1.0 + ROUNDING)).then_some((begins, end))
+        (end <= self.horizon * (1.0 + ROUNDING)).then_some((begins, departures, end))
     }
 
     /// What the targets of an order are worth together.

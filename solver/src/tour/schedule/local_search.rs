@@ -6,7 +6,7 @@
 //! removes a run of visits, and the schedule is filled again; it is kept if it is not worse than the one
 //! before by more than a tolerance, and after many kicks without success the best one is kicked.
 
-use super::instance::Instance;
+use super::instance::{Departure, Instance};
 use crate::math::random::SplitMix;
 use std::ops::Range;
 
@@ -29,6 +29,8 @@ pub(super) struct Filled {
     pub(super) end: f64,
     /// When every visit begins, as early as possible, s.
     begins: Vec<f64>,
+    /// The departures before every visit, and that to the end.
+    departures: Vec<Departure>,
     /// When it begins at the latest, so that all that follows can be done, s.
     latest: Vec<f64>,
 }
@@ -36,7 +38,7 @@ pub(super) struct Filled {
 impl Filled {
     /// Times of an order; `None` where it breaks a window, a rule or the horizon.
     pub(super) fn of(instance: &Instance, order: Vec<usize>) -> Option<Self> {
-        let (begins, end) = instance.follow(&order)?;
+        let (begins, departures, end) = instance.follow(&order)?;
         let mut latest = vec![0.0; order.len()];
         let mut due = instance.horizon;
         let mut next = instance.count + 1;
@@ -55,6 +57,7 @@ impl Filled {
             order,
             end,
             begins,
+            departures,
             latest,
         })
     }
@@ -71,20 +74,14 @@ impl Filled {
 
     /// By how much a visit at a place delays what follows, s; `None` where it does not fit.
     fn delay(&self, instance: &Instance, target: usize, place: usize) -> Option<f64> {
-        let from = place
-            .checked_sub(1)
-            .map(|before| (self.order[before], self.begins[before]));
-        let (at, departure) = from.map_or((0, 0.0), |(before, begin)| {
-            (before + 1, begin + instance.service[before])
-        });
-        let begin = instance.begin_after(target, departure + instance.leg(at, target + 1))?;
-        let departure = begin + instance.service[target];
+        let from = &self.departures[place];
+        let begin = instance.begin_after(target, instance.arrival(from, target + 1))?;
+        let departure = instance.departure(from, target, begin);
         let Some(&next) = self.order.get(place) else {
-            let end = departure + instance.leg_to_end(target + 1);
+            let end = instance.arrival_at_end(&departure);
             return (end <= instance.horizon).then_some((end - self.end).max(0.0));
         };
-        let arrival = departure + instance.leg(target + 1, next + 1);
-        let begin = instance.begin_after(next, arrival)?;
+        let begin = instance.begin_after(next, instance.arrival(&departure, next + 1))?;
         (begin <= self.latest[place]).then(|| begin - self.begins[place])
     }
 }
@@ -261,25 +258,19 @@ impl<'a> LocalSearch<'a> {
     fn ends_before(&self, change: &Move, end: f64) -> bool {
         let (instance, now) = (self.instance, &self.now);
         let changed = change.changed();
-        let (mut at, mut time) = match changed.start.checked_sub(1) {
-            None => (0, 0.0),
-            Some(before) => {
-                let target = now.order[before];
-                (target + 1, now.begins[before] + instance.service[target])
-            }
-        };
+        let mut departure = now.departures[changed.start];
         for place in changed.start..now.order.len() {
             let target = now.order[change.source(place)];
-            let arrival = time + instance.leg(at, target + 1);
+            let arrival = instance.arrival(&departure, target + 1);
             let Some(begin) = instance.begin_after(target, arrival) else {
                 return false;
             };
             if place >= changed.end && begin >= now.begins[place] {
                 return false;
             }
-            (at, time) = (target + 1, begin + instance.service[target]);
+            departure = instance.departure(&departure, target, begin);
         }
-        time + instance.leg_to_end(at) < end
+        instance.arrival_at_end(&departure) < end
     }
 }
 

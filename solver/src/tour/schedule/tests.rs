@@ -85,11 +85,7 @@ impl Case {
     }
 
     fn number(&self, place: Place) -> usize {
-        match place {
-            Place::Start => 0,
-            Place::Target(target) => 1 + target,
-            Place::End => self.travel.len() - 1,
-        }
+        place.number(self.travel.len())
     }
 
     /// The earliest arrival after the departures from all places so far.

@@ -233,7 +233,7 @@ impl Chain<'_> {
         if !self.keeps_windows(&begins) {
             return Err(NoChain::Unresolved);
         }
-        Ok(self.solved((delay, Arc::new(motion)), begins, true))
+        Ok(self.solved((delay, Arc::new(motion)), begins, is_least))
     }
 
     /// The free motion with legs that are longer where it arrives before a window.

@@ -63,8 +63,8 @@ pub(super) struct CoupledSearch<'a> {
 }
 
 impl<'a> CoupledSearch<'a> {
-    /// A search with only the beginning without visits, for the problem that a search on times of single
-    /// legs has relaxed.
+    /// A search with only the beginning without visits, and bounds from lower bounds on the times of legs:
+    /// what may follow beginnings, and the best schedule.
     pub(super) fn new(
         tours: &'a Tours<'a>,
         (pool, stop): (&'a SolverPool, &'a StopSignal),

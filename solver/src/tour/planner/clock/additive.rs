@@ -5,7 +5,9 @@ use crate::model::plan::Outcome;
 use crate::tour::order::{Place, TourModel};
 use crate::tour::planner::additive_tours::LegTimes;
 use crate::tour::planner::turn_estimates::TurnEstimates;
-use crate::tour::schedule::{SearchLimits, TimedOrder, TimedResult, possible_legs, search_from};
+use crate::tour::schedule::{
+    MAX_LABELLED, SearchLimits, TimedOrder, TimedResult, possible_legs, search_from,
+};
 
 /// Rounds of first schedules among many targets.
 const FIRST_ROUNDS: usize = 8;
@@ -17,24 +19,30 @@ const LEGS_AT_ONCE: usize = 1000;
 impl Planning<'_> {
     /// The answer where every target is visited at rest.
     pub(super) fn with_legs_alone(mut self) -> Outcome {
-        if self.tours.places.needs_all_legs() {
+        let mut has_all = self.tours.places.needs_all_legs();
+        if has_all {
             self.solve_all_legs();
         } else {
-            self.solve_legs_in_time();
+            self.solve_good_schedules();
+            self.prove_possible_legs();
         }
         let mut value_bound = f64::INFINITY;
         loop {
-            let found = self.search();
+            // Local searches go on where nothing else is left to do.
+            let found = self.search(if has_all { MORE_ROUNDS } else { 0 });
             value_bound = value_bound.min(found.value_bound);
+            let found = TimedResult {
+                value_bound,
+                ..found
+            };
             let order = found.best.as_ref().map(|best| &best.order[..]);
             let open = order.map_or(Vec::new(), |order| self.open_legs(order));
-            if open.is_empty() {
+            if open.is_empty() && (found.complete || has_all) {
                 return self.conclude(&found, None);
             }
             if self.stop.is_set() {
                 let known = TimedResult {
                     best: self.search_solved(None).best,
-                    value_bound,
                     complete: false,
                     end_bound_s: 0.0,
                     ..found
@@ -43,11 +51,15 @@ impl Planning<'_> {
             }
             self.solve(&open);
             self.tell_solved(&found);
+            if !found.complete && !has_all {
+                self.solve_possible_legs(&found);
+                has_all = true;
+            }
         }
     }
 
-    /// Of many targets: the legs of good schedules first, then all that are possible in time.
-    fn solve_legs_in_time(&self) {
+    /// Solves the legs of good schedules by estimates of their times.
+    fn solve_good_schedules(&self) {
         let estimates = TurnEstimates::of(self.tours.places);
         for _ in 0..FIRST_ROUNDS {
             let found = self.search_solved(Some(&estimates));
@@ -68,22 +80,39 @@ impl Planning<'_> {
                 break;
             }
         }
-        // Bounds on what is not solved yet, before the legs take the time that is left.
-        let relaxed = self.relaxed();
-        self.tell_solved(&relaxed);
-        let times = |from, to| self.time_s(from, to);
-        let possible = possible_legs(&self.problem, &times);
-        let open: Vec<_> = possible
-            .into_iter()
-            .filter(|(from, to)| self.tours.is_open(*from, *to))
-            .collect();
-        for some in open.chunks(LEGS_AT_ONCE) {
+    }
+
+    /// Certified bounds of all legs that are possible in time: a tenth of the work of the legs, and so close
+    /// to their times that labels need few of them solved.
+    fn prove_possible_legs(&self) {
+        if self.problem.targets.len() > MAX_LABELLED {
+            return;
+        }
+        for some in self.possible_legs().chunks(LEGS_AT_ONCE) {
+            if self.stop.is_set() {
+                return;
+            }
+            self.tours.certified.raise(some);
+        }
+    }
+
+    /// Solves all legs that are possible in time, and tells of the schedules that they make known.
+    fn solve_possible_legs(&self, bounds: &TimedResult) {
+        for some in self.possible_legs().chunks(LEGS_AT_ONCE) {
             if self.stop.is_set() {
                 return;
             }
             self.tours.solve_free_legs(some);
-            self.tell_solved(&relaxed);
+            self.tell_solved(bounds);
         }
+    }
+
+    /// The legs that are possible in time and not solved.
+    fn possible_legs(&self) -> Vec<(Place, Place)> {
+        let times = |from, to| self.time_s(from, to);
+        let mut possible = possible_legs(&self.problem, &times);
+        possible.retain(|(from, to)| self.tours.is_open(*from, *to));
+        possible
     }
 
     /// The schedule of the visits of an order that fit one after the other, all of whose legs are solved:
@@ -129,13 +158,14 @@ impl Planning<'_> {
         self.tell(&known, None);
     }
 
-    /// The search with bounds for the times of legs that are not solved.
-    fn search(&self) -> TimedResult {
+    /// The search with bounds for the times of legs that are not solved, with so many local searches more
+    /// where nothing is proved.
+    fn search(&self, more_rounds: usize) -> TimedResult {
         let times = |from, to| self.time_s(from, to);
         let stop = || self.stop.is_set();
         let limits = SearchLimits {
             // A limit of nodes is one of labels, and then of the whole search.
-            more_rounds: self.limits.labels.map_or(MORE_ROUNDS, |_| 0),
+            more_rounds: self.limits.labels.map_or(more_rounds, |_| 0),
             ..self.limits
         };
         let all = (&self.problem, &times);

@@ -116,12 +116,12 @@ fn head(canvas: &mut Canvas, name: &str, summary: &str) {
 /// The title of the picture: the plan in a line.
 fn summary(plan: &WrittenPlan) -> String {
     let mut parts: Vec<String> = plan.value_words().into_iter().collect();
-    parts.extend([
-        format!("{:.2} s", plan.total_time_s),
-        plan.status.clone(),
-        format!("lower bound {:.2} s", plan.lower_bound_s),
-        format!("gap {:.2} %", 100.0 * plan.relative_gap),
-    ]);
+    parts.extend([format!("{:.2} s", plan.total_time_s), plan.status.clone()]);
+    // Of a schedule with open value no end may be known at all.
+    if plan.relative_gap < 1.0 {
+        parts.push(format!("lower bound {:.2} s", plan.lower_bound_s));
+        parts.push(format!("gap {:.2} %", 100.0 * plan.relative_gap));
+    }
     if let Some(verification) = &plan.verification {
         let passed = if verification.passed { "" } else { "not " };
         parts.push(format!("{passed}verified"));

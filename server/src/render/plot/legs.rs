@@ -6,7 +6,9 @@ use super::written::{WrittenLeg, WrittenPlan};
 
 const HIGHEST: f64 = 42.0;
 const LOWEST: f64 = 15.0;
-const NAMES: f64 = 130.0;
+/// Width of a character of a name, and the gap between names and bars.
+const CHARACTER: f64 = 7.2;
+const GAP: f64 = 12.0;
 /// Right ends of the columns of numbers, from the right edge.
 const OURS: f64 = 150.0;
 const THEIRS: f64 = 64.0;
@@ -39,11 +41,28 @@ pub(super) fn draw(canvas: &mut Canvas, frame: PlotArea, plan: &WrittenPlan) {
     });
     let longest = |leg: &WrittenLeg| leg.duration_s.max(leg.eigenaxis_duration_s.unwrap_or(0.0));
     let most = plan.legs.iter().map(longest).fold(1e-9, f64::max);
-    let scale = (frame.width - NAMES - NUMBERS) / most;
+    let characters = plan.legs.iter().map(|leg| names(leg).chars().count());
+    let widest = characters.max().unwrap_or(0) as f64 * CHARACTER + GAP;
+    let bars = PlotArea {
+        left: frame.left + widest,
+        width: frame.width - widest - NUMBERS,
+        ..frame
+    };
+    let scale = bars.width / most;
     let mut top = frame.top + 28.0;
     let mut drawn = 0;
     for (_, leg) in shown {
-        row(canvas, frame, top, height, leg, scale);
+        row(
+            canvas,
+            frame.left,
+            PlotArea {
+                top,
+                height,
+                ..bars
+            },
+            leg,
+            scale,
+        );
         top += height;
         drawn += 1;
     }
@@ -53,27 +72,27 @@ pub(super) fn draw(canvas: &mut Canvas, frame: PlotArea, plan: &WrittenPlan) {
     }
 }
 
-fn row(canvas: &mut Canvas, frame: PlotArea, top: f64, height: f64, leg: &WrittenLeg, scale: f64) {
-    let middle = top + 0.5 * height + 4.0;
-    let names = format!("{} \u{2192} {}", short(&leg.from), short(&leg.to));
-    canvas.text(frame.left, middle, Ink::PLAIN, &names);
-    let bar = |length: f64, share: f64| PlotArea {
-        left: frame.left + NAMES,
-        top: top + 0.5 * height * (1.0 - share),
+/// A row: names at the left, bars of so many pixels a second in their place, numbers right of them.
+fn row(canvas: &mut Canvas, left: f64, place: PlotArea, leg: &WrittenLeg, scale: f64) {
+    let middle = place.top + 0.5 * place.height + 4.0;
+    canvas.text(left, middle, Ink::PLAIN, &names(leg));
+    let bar = |length: f64| PlotArea {
+        left: place.left,
+        top: place.top + 0.5 * place.height * (1.0 - THICK),
         width: length * scale,
-        height: height * share,
+        height: place.height * THICK,
     };
     if let Some(eigenaxis) = leg.eigenaxis_duration_s {
-        canvas.rectangle(bar(eigenaxis, THICK), "#CFE3F1", 2.0);
+        canvas.rectangle(bar(eigenaxis), "#CFE3F1", 2.0);
     }
-    canvas.rectangle(bar(leg.duration_s, THICK), SERIES[0], 2.0);
-    let right = frame.left + frame.width;
+    canvas.rectangle(bar(leg.duration_s), SERIES[0], 2.0);
+    let right = place.left + place.width + NUMBERS;
     let ours = format!("{:.2}", leg.duration_s);
     canvas.text(right - OURS, middle, Ink::PLAIN.end(), &ours);
     let Some(eigenaxis) = leg.eigenaxis_duration_s else {
         return;
     };
-    let whole = bar(eigenaxis, THICK);
+    let whole = bar(eigenaxis);
     let edge = whole.left + whole.width;
     let mark = Pen::new(SERIES[0], 1.0);
     canvas.line((edge, whole.top), (edge, whole.top + whole.height), mark);
@@ -81,6 +100,10 @@ fn row(canvas: &mut Canvas, frame: PlotArea, top: f64, height: f64, leg: &Writte
     canvas.text(right - THEIRS, middle, Ink::QUIET.end(), &theirs);
     let saved = format!("{:.1} %", 100.0 * (1.0 - leg.duration_s / eigenaxis));
     canvas.text(right - SAVED, middle, Ink::QUIET.end(), &minus(&saved));
+}
+
+fn names(leg: &WrittenLeg) -> String {
+    format!("{} \u{2192} {}", short(&leg.from), short(&leg.to))
 }
 
 fn short(name: &str) -> String {

@@ -166,6 +166,10 @@ fn bound(plan: &Plan) -> String {
                 format_args!("{bound:.3} s, gap {:.4} %", gap * 100.0),
             )
         });
+    // Of a schedule with open value no end may be known at all.
+    if plan.relative_gap >= 1.0 {
+        return proved;
+    }
     let meaning = match plan.lower_bound_kind {
         LowerBoundKind::NlpRelaxation => "if every relaxed problem was solved globally",
         LowerBoundKind::PairTable => "sum of leg times with free ends, if each was solved globally",

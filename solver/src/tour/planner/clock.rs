@@ -205,7 +205,7 @@ impl Planning<'_> {
             done: now.labels,
             total: None,
             incumbent_s: best.map(|best| best.end_s),
-            lower_bound_s: Some(now.end_bound_s),
+            lower_bound_s: Some(now.end_bound_s).filter(|bound| *bound > 0.0),
             value: best.map(|best| best.value),
             value_bound: Some(now.value_bound),
         });

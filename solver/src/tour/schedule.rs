@@ -47,7 +47,7 @@ use crate::tour::order::Place;
 
 pub use continuations::{Beginning, Continuation, Continuations, Rank};
 pub use reach::{Reach, possible_legs, reaches};
-pub use search::{LABEL_BYTES, MAX_LABELS, SearchLimits, search, search_from};
+pub use search::{LABEL_BYTES, MAX_LABELS, SearchLimits, labels_in_time, search, search_from};
 
 /// Most targets for which bounds are computed by labels.
 pub const MAX_LABELLED: usize = target_set::MAX_MEMBERS;

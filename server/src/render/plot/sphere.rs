@@ -117,15 +117,19 @@ pub(super) fn draw(
         0 => "",
         _ => "; red: excluded by cones",
     };
-    let caption = format!(
-        "Where {} points in {of}; dashed: far side{cones}",
-        boresight.name
-    );
-    let below = frame.top + frame.height + 4.0;
-    canvas.text(view.centre.0, below, Ink::SMALL.middle(), &caption);
-    if ups.iter().any(Option::is_some) {
-        let ticks = "ticks: roll, up is 0";
-        canvas.text(view.centre.0, below + 14.0, Ink::SMALL.middle(), ticks);
+    let ticks = if ups.iter().any(Option::is_some) {
+        "; ticks: roll, up is 0"
+    } else {
+        ""
+    };
+    let captions = [
+        format!("Where {} points in {of}", boresight.name),
+        format!("dashed: far side{cones}{ticks}"),
+    ];
+    let mut below = frame.top + frame.height + 4.0;
+    for caption in captions {
+        canvas.text(view.centre.0, below, Ink::SMALL.middle(), &caption);
+        below += 14.0;
     }
 }
 

@@ -171,9 +171,10 @@ pub(super) fn strip(
         canvas.line((x, frame.top + height - 14.0), (x, frame.top + height), pen);
         let words = format!("{} {}", index + 1, passage.target);
         // Names that would overlap are left out.
-        if x - last > 7.0 * words.chars().count() as f64 + 6.0 {
+        let half = 3.5 * words.chars().count() as f64;
+        if x - half > last + 6.0 {
             canvas.text(x, frame.top + height - 19.0, Ink::SMALL.middle(), &words);
-            last = x;
+            last = x + half;
         }
     }
     canvas.text(

@@ -38,7 +38,9 @@ use crate::run::stop::StopSignal;
 use crate::tour::order::{
     Incumbent, Place, SearchObserver, SearchStatistics, SolvedOrder, TourModel,
 };
-use crate::tour::schedule::{SearchLimits, TimedOrder, TimedProblem, TimedResult, search};
+use crate::tour::schedule::{
+    MAX_LABELS, SearchLimits, TimedOrder, TimedProblem, TimedResult, labels_in_time, search,
+};
 pub(super) use chains::SolvedChain;
 use explanation::conflict;
 use problem::{MAX_COUPLED, MAX_WHEELS, is_plannable, leaves_nothing_free, timed_problem};
@@ -48,7 +50,7 @@ use std::time::Instant;
 
 /// Time, s, of a leg for which no solution was found.
 const NO_LEG_S: f64 = f64::INFINITY;
-/// Labels of a search for bounds alone.
+/// Labels of a search on bounds, among few targets.
 const LABELS_OF_BOUNDS: u64 = 400_000;
 /// Relative difference of ends that counts as none.
 const SAME_END: f64 = 1e-7;
@@ -149,6 +151,7 @@ impl<'a> Planning<'a> {
         Self {
             problem: timed_problem(scenario),
             limits: SearchLimits {
+                labels_of_a_run: labels_in_time(MAX_LABELS, scenario.targets().len()),
                 labels: scenario.options().node_limit,
                 seed: scenario.options().seed,
                 ..SearchLimits::default()
@@ -277,10 +280,7 @@ impl Planning<'_> {
             self.solve_all_legs();
         }
         let times = |from, to| self.time_s(from, to);
-        let limits = SearchLimits {
-            labels: Some(self.limits.labels.unwrap_or(LABELS_OF_BOUNDS)),
-            ..self.limits
-        };
+        let limits = self.limits_on_bounds();
         search(
             &self.problem,
             &times,
@@ -288,6 +288,15 @@ impl Planning<'_> {
             &|| self.stop.is_set(),
             &mut |_| (),
         )
+    }
+
+    /// The limits of a search on bounds, after which legs are solved.
+    fn limits_on_bounds(&self) -> SearchLimits {
+        let some = labels_in_time(LABELS_OF_BOUNDS, self.problem.targets.len());
+        SearchLimits {
+            labels: Some(self.limits.labels.unwrap_or(some)),
+            ..self.limits
+        }
     }
 
     /// Time of a leg, s, or a lower bound on it.

@@ -13,7 +13,7 @@ use crate::model::dynamics::{Authority, Dynamics};
 use crate::model::scenario::{RateCondition, Scenario, Target};
 use crate::tour::order::completion::MAX_EXACT_TARGETS;
 use crate::tour::order::lagrangian::{LagrangianPaths, MAX_LAGRANGIAN_TARGETS};
-use crate::tour::schedule::{LABEL_BYTES, MAX_LABELS};
+use crate::tour::schedule::{LABEL_BYTES, MAX_LABELS, labels_in_time};
 use std::f64::consts::FRAC_PI_2;
 
 /// Memory of the smallest solve with its plan, bytes.
@@ -148,7 +148,9 @@ impl Size {
             return 0;
         }
         let few = u32::try_from(self.targets).unwrap_or(u32::MAX).min(32);
-        MAX_LABELS.min((2 * self.targets) << few) * LABEL_BYTES
+        let targets = usize::try_from(self.targets).unwrap_or(usize::MAX);
+        let most = labels_in_time(MAX_LABELS, targets);
+        most.min((2 * self.targets) << few) * LABEL_BYTES
     }
 
     /// Open nodes and solved segments.

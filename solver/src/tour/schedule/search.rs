@@ -18,6 +18,17 @@ pub const MAX_LABELS: u64 = 1_000_000;
 /// Memory of a label with its entries in queues and bounds, bytes.
 pub const LABEL_BYTES: u64 = 320;
 
+/// Number of targets up to which the times of labels count as equal.
+const QUICK_TARGETS: u64 = 80;
+
+/// The number of labels among so many targets that take no longer than some among few: a label is extended
+/// to, and compared with, about as many others as there are targets.
+#[must_use]
+pub fn labels_in_time(labels: u64, targets: usize) -> u64 {
+    let targets = QUICK_TARGETS.max(targets as u64);
+    labels * QUICK_TARGETS.pow(2) / targets.saturating_pow(2)
+}
+
 /// Where a search ends at the latest.
 #[derive(Debug, Clone, Copy)]
 pub struct SearchLimits {

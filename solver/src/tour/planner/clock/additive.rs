@@ -28,8 +28,11 @@ impl Planning<'_> {
         }
         let mut value_bound = f64::INFINITY;
         loop {
-            // Local searches go on where nothing else is left to do.
-            let found = self.search(if has_all { MORE_ROUNDS } else { 0 });
+            let found = self.search(if has_all {
+                self.limits_on_times()
+            } else {
+                self.limits_on_bounds()
+            });
             value_bound = value_bound.min(found.value_bound);
             let found = TimedResult {
                 value_bound,
@@ -158,16 +161,19 @@ impl Planning<'_> {
         self.tell(&known, None);
     }
 
-    /// The search with bounds for the times of legs that are not solved, with so many local searches more
-    /// where nothing is proved.
-    fn search(&self, more_rounds: usize) -> TimedResult {
+    /// The limits of the last search. Local searches go on where nothing is proved.
+    fn limits_on_times(&self) -> SearchLimits {
+        SearchLimits {
+            // A limit of nodes is one of labels, and then of the whole search.
+            more_rounds: self.limits.labels.map_or(MORE_ROUNDS, |_| 0),
+            ..self.limits
+        }
+    }
+
+    /// The search with bounds for the times of legs that are not solved.
+    fn search(&self, limits: SearchLimits) -> TimedResult {
         let times = |from, to| self.time_s(from, to);
         let stop = || self.stop.is_set();
-        let limits = SearchLimits {
-            // A limit of nodes is one of labels, and then of the whole search.
-            more_rounds: self.limits.labels.map_or(more_rounds, |_| 0),
-            ..self.limits
-        };
         let all = (&self.problem, &times);
         let first = self.told_order();
         search_from(all, &first, limits, &stop, &mut |now| {

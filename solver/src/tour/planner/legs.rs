@@ -3,6 +3,8 @@
 //! Pairs of places are reduced to canonical legs first. Equal problems are solved once: within a
 //! table, between the tables of one solve and, through the store, between solves.
 
+mod solving;
+
 use super::Run;
 use super::bounds_by_form::BoundsByForm;
 use super::canonical::{CanonicalLeg, missing_from};
@@ -10,17 +12,17 @@ use super::from_store::{leg_from_store, stored_leg};
 use super::legs_ahead::{LegsAhead, offer};
 use super::places::Places;
 use super::tables::{CertifiedLeg, SolvedLeg, SolvedTable, Table, TabulatedLeg};
-use super::verified::{flight_faults, is_feasible};
+use super::verified::flight_faults;
 use crate::leg::multiphase::LegSolution;
-use crate::leg::solve;
-use crate::leg::solve::around_cones::{self, is_clear};
+use crate::leg::solve::around_cones::is_clear;
 use crate::model::waypoint::Waypoint;
-use crate::nlp::{Breakdown, NlpStatus, Quantity};
+use crate::nlp::NlpStatus;
 use crate::run::contradiction::{Contradiction, refutes};
 use crate::run::progress::{Progress, Stage};
 use crate::run::stop::{StopReason, StopSignal};
 use crate::tour::legs::{LegKind, SegmentStore, StoredLeg};
 use crate::tour::order::Place;
+use solving::solve;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -313,14 +315,34 @@ impl<'a> LegSolver<'a> {
             if self.is_abandoned() {
                 return;
             }
-            let row = ahead.take(place);
-            if let Some(stored) = row.and_then(|row| self.verified(leg, row)) {
-                self.keep(leg, &Arc::new(stored), true);
-            } else if !self.stop.is_set() {
+            if !self.keep_stored(&ahead, place, leg) && !self.stop.is_set() {
                 self.keep(leg, &Arc::new(self.solve(kind, leg)), false);
             }
             tell(done.fetch_add(1, Relaxed) + 1, total);
         });
+    }
+
+    /// Takes legs from the store in as few look-ups as it allows; what it lacks stays unknown.
+    pub(super) fn load_all(&self, kind: LegKind, pairs: &[(Place, Place)]) {
+        let canonical = self.all_canonical(kind, pairs);
+        let missing = missing_from(&lock(&self.known), &canonical);
+        let legs: Vec<_> = missing.into_iter().map(|(_, leg)| leg).collect();
+        let ahead = LegsAhead::new(self.run.legs, &legs);
+        for (place, leg) in legs.iter().enumerate() {
+            if self.is_abandoned() {
+                return;
+            }
+            self.keep_stored(&ahead, place, leg);
+        }
+    }
+
+    /// Keeps a leg at a place of a list if the store has it; whether it has.
+    fn keep_stored(&self, ahead: &LegsAhead<'_>, place: usize, leg: &CanonicalLeg) -> bool {
+        let row = ahead.take(place);
+        let stored = row.and_then(|row| self.verified(leg, row));
+        stored
+            .map(|stored| self.keep(leg, &Arc::new(stored), true))
+            .is_some()
     }
 
     /// A leg from the store, if its motion passes verification.
@@ -447,43 +469,6 @@ pub(super) fn certify(places: &Places<'_>, leg: &CanonicalLeg) -> CertifiedLeg {
             .certified
             .leg(&leg.from, &leg.to, &leg.dynamics.momentum),
         solve_time: begin.elapsed().as_secs_f64(),
-    }
-}
-
-/// Solves a leg, refines it until the checker accepts it, and verifies it. A bound certified before
-/// is not computed again.
-fn solve(
-    places: &Places<'_>,
-    leg: &CanonicalLeg,
-    certified: Option<CertifiedLeg>,
-    stop: &StopSignal,
-) -> SolvedLeg {
-    let begin = Instant::now();
-    let certified = certified
-        .unwrap_or_else(|| certify(places, leg))
-        .lower_bound;
-    let problem = leg.problem(&places.extremals);
-    let stop = || stop.reason();
-    let mut solved = match &leg.free {
-        Some(free) if leg.described_from() == [None, None] => {
-            around_cones::solve_around(&problem, free, &stop)
-        }
-        _ => solve::solve(&problem, certified, &stop),
-    };
-    if solved.solution.duration().is_some() && !is_feasible(places, leg, &solved.solution.profile) {
-        solved.solution.status = NlpStatus::NumericalError(Breakdown {
-            stage: solved.solution.profile.intervals(),
-            quantity: Quantity::Flight,
-        });
-    }
-    SolvedLeg {
-        solution: solved.solution,
-        certified,
-        solves: solved.solves,
-        solve_time: begin.elapsed().as_secs_f64(),
-        from_store: false,
-        is_condensed: false,
-        described_from: leg.described_from(),
     }
 }
 

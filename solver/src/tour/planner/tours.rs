@@ -72,6 +72,18 @@ impl<'a> Tours<'a> {
         }
     }
 
+    /// Takes from the store what it has of the legs of an order that are segments of their own.
+    pub(super) fn load_legs(&self, order: &[usize]) {
+        let route = self.places.route(order, true);
+        let segments = self.places.split(&route);
+        let legs = segments.iter().filter_map(|segment| match segment {
+            [from, to] => Some((*from, *to)),
+            _ => None,
+        });
+        let legs: Vec<_> = legs.collect();
+        self.legs.load_all(LegKind::LowerBound, &legs);
+    }
+
     /// A leg that was solved with only the conditions of its own ends.
     pub(super) fn known_free_leg(&self, from: Place, to: Place) -> Option<TabulatedLeg> {
         // A panic under the lock leaves the table consistent.

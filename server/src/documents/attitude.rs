@@ -7,7 +7,7 @@ use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::spec::{AttitudeSpec, BoresightChoice};
 
 fn read_text(text: &str) -> (AttitudeSpec, Vec<Problem>) {
-    let node = parse(text.as_bytes()).unwrap();
+    let node = parse(text.as_bytes()).expect("JSON");
     let sink = Sink::default();
     let spec = AttitudeSpec::read(&Cursor::root(&node, &sink)).unwrap_or_default();
     (spec, sink.into_problems())

@@ -52,17 +52,12 @@ pub(super) fn draw(canvas: &mut Canvas, frame: PlotArea, plan: &WrittenPlan) {
     let mut top = frame.top + 28.0;
     let mut drawn = 0;
     for (_, leg) in shown {
-        row(
-            canvas,
-            frame.left,
-            PlotArea {
-                top,
-                height,
-                ..bars
-            },
-            leg,
-            scale,
-        );
+        let place = PlotArea {
+            top,
+            height,
+            ..bars
+        };
+        row(canvas, frame.left, place, leg, scale);
         top += height;
         drawn += 1;
     }

@@ -339,10 +339,11 @@ impl<'a> LegSolver<'a> {
     /// Keeps a leg at a place of a list if the store has it; whether it has.
     fn keep_stored(&self, ahead: &LegsAhead<'_>, place: usize, leg: &CanonicalLeg) -> bool {
         let row = ahead.take(place);
-        let stored = row.and_then(|row| self.verified(leg, row));
-        stored
-            .map(|stored| self.keep(leg, &Arc::new(stored), true))
-            .is_some()
+        let Some(stored) = row.and_then(|row| self.verified(leg, row)) else {
+            return false;
+        };
+        self.keep(leg, &Arc::new(stored), true);
+        true
     }
 
     /// A leg from the store, if its motion passes verification.

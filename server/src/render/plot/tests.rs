@@ -1,6 +1,6 @@
 //! Contents of the SVG of a plan.
 
-use super::{DrawnBoresight, WrittenPlan, plan as svg};
+use super::{DrawnBoresight, WrittenPlan, plan as svg, summary};
 use crate::documents;
 use crate::render::report::sample;
 use serde_json::{Value, json};
@@ -57,6 +57,14 @@ fn a_plan_alone_is_drawn_without_limits() {
         assert!(picture.contains(&format!(">{words}</text>")), "{words}");
     }
     assert!(!picture.contains("limit") && !picture.contains("by cones"));
+}
+
+#[test]
+fn a_bound_that_is_not_known_is_not_drawn() {
+    let mut plan = WrittenPlan::read(&written()).unwrap();
+    assert!(summary(&plan).contains("lower bound 30.00 s"));
+    (plan.lower_bound_s, plan.relative_gap) = (0.0, 1.0);
+    assert!(!summary(&plan).contains("bound") && !summary(&plan).contains("gap"));
 }
 
 #[test]

@@ -285,6 +285,15 @@ mod tests {
     }
 
     #[test]
+    fn a_bound_that_is_not_known_is_not_stated() {
+        let mut plan = sample::plan();
+        assert!(super::plan(&plan, &[]).contains("lower bound"));
+        (plan.lower_bound_s, plan.relative_gap) = (0.0, 1.0);
+        let text = super::plan(&plan, &[]);
+        assert!(text.contains("proved bound") && !text.contains("lower bound"));
+    }
+
+    #[test]
     fn without_an_eigenaxis_slew_no_saving_is_stated() {
         let mut plan = sample::plan();
         plan.legs[1].eigenaxis_duration_s = None;

@@ -123,7 +123,7 @@ impl Continuations {
     /// Whether so much worth includes that of all required targets.
     #[must_use]
     pub fn is_whole(&self, units: u64) -> bool {
-        self.worth.required_in(units) == self.worth.required()
+        self.worth.is_whole(units)
     }
 
     /// Upper bound on the sum of values of schedules of so much worth.

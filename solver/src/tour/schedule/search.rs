@@ -102,7 +102,8 @@ pub fn search_from(
     search.tell();
     if instance.count <= MAX_LABELLED {
         search.prove_worth(&instance);
-        if search.proved {
+        // Without all required targets no schedule counts, whenever it ends.
+        if search.proved && search.worth.is_whole(search.units_bound) {
             search.proved = false;
             search.prove_end(&instance);
         }
@@ -265,8 +266,7 @@ impl Search<'_> {
     }
 
     fn result(&self) -> TimedResult {
-        let required = self.worth.required();
-        let whole = |best: &&Filled| self.worth.required_in(best.units) == required;
+        let whole = |best: &&Filled| self.worth.is_whole(best.units);
         let best = self.best.as_ref().filter(whole);
         let best = best.map(|best| TimedOrder {
             begins_s: best.begins().to_vec(),

@@ -49,11 +49,15 @@ impl Worth {
         required.count() as u64
     }
 
+    /// Whether so much worth includes that of all required targets.
+    pub(super) fn is_whole(&self, units: u64) -> bool {
+        self.required_in(units) >= self.required()
+    }
+
     /// The values of optional targets in a bound on the sum of units.
     pub(super) fn value_of(&self, units: u64) -> f64 {
-        let missed = self.required().saturating_sub(self.required_in(units));
-        if missed > 0 {
-            // Less than all required targets: there is no schedule.
+        if !self.is_whole(units) {
+            // There is no schedule.
             return 0.0;
         }
         // No sum of worth is more than that of all targets, but a bound may be.

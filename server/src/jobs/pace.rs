@@ -2,16 +2,17 @@
 
 use std::time::Duration;
 
-/// Time after its begin at which a job that has not ended is no tiny one: its begin is stored then.
-pub(super) const TINY: Duration = Duration::from_millis(25);
+/// Time after its begin at which a job that has not ended is no tiny one: its begin is stored then. Several
+/// times what a tiny job computes, since other jobs and processes share the cores.
+pub(super) const TINY: Duration = Duration::from_millis(100);
 /// Time that claimed jobs may wait in this process while others wait for a worker.
-const AHEAD_S: f64 = 0.05;
+const AHEAD_S: f64 = 0.1;
 /// Maximum number of jobs of a claim.
 const MAX_CLAIM: usize = 16;
 /// A claim takes at most one of so many waiting jobs: where few wait, other workers may be idle.
 const SHARE: usize = 8;
 /// What any job that is not tiny counts for in the average, s.
-const SLOW_S: f64 = 0.05;
+const SLOW_S: f64 = 0.2;
 /// Weight of the newest job in the average.
 const WEIGHT: f64 = 0.2;
 
@@ -82,8 +83,8 @@ mod tests {
         pace.left(0);
         assert_eq!(pace.claim(), 1);
         pace.left(1000);
-        pace.ended(0.022);
-        // The average is 6 ms.
+        pace.ended(0.052);
+        // The average is 12 ms.
         assert_eq!(pace.claim(), 8);
         for end in [|pace: &mut Pace| pace.ended(60.0), Pace::slow] {
             end(&mut pace);

@@ -24,7 +24,31 @@ const PAUSE: Duration = Duration::from_millis(100);
 #[derive(Debug, Clone, Default)]
 pub(super) struct ProgressReport {
     progress: Option<Progress>,
-    incumbent: Option<Arc<NewIncumbent>>,
+    incumbent: Option<Arc<FoundPlan>>,
+}
+
+/// The best plan so far, and the warnings of its scenario.
+#[derive(Debug)]
+struct FoundPlan {
+    plan: Plan,
+    doubts: Arc<[Problem]>,
+}
+
+impl FoundPlan {
+    /// The plan as it is stored; `None` if it cannot be written.
+    fn packed(&self) -> Option<NewIncumbent> {
+        let plan = &self.plan;
+        let document = serde_json::to_vec(&documents::plan::plan(plan, &self.doubts));
+        let document = document
+            .inspect_err(|error| tracing::error!(%error, "the best plan so far cannot be written"));
+        Some(NewIncumbent {
+            document: PackedPlan::of(&document.ok()?),
+            total_time_s: plan.total_time_s,
+            lower_bound_s: plan.lower_bound_s,
+            value: plan.schedule.as_ref().map(|schedule| schedule.value),
+            keep_out_violated: plan.margins.violates_cones(),
+        })
+    }
 }
 
 /// Holds the newest progress and plan for the recorder; never blocks.
@@ -38,17 +62,17 @@ impl Reporter {
     }
 
     /// The observer of a solve; `doubts` are the warnings of its scenario.
-    pub(super) fn observer<'a>(&'a self, doubts: &'a [Problem]) -> impl Observer + use<'a> {
+    pub(super) fn observer<'a>(&'a self, doubts: &[Problem]) -> impl Observer + use<'a> {
         ReportingObserver {
             reports: &self.0,
-            doubts,
+            doubts: doubts.into(),
         }
     }
 }
 
 struct ReportingObserver<'a> {
     reports: &'a watch::Sender<ProgressReport>,
-    doubts: &'a [Problem],
+    doubts: Arc<[Problem]>,
 }
 
 impl Observer for ReportingObserver<'_> {
@@ -58,16 +82,10 @@ impl Observer for ReportingObserver<'_> {
     }
 
     fn incumbent(&self, plan: &Plan) {
-        let document = match serde_json::to_vec(&documents::plan::plan(plan, self.doubts)) {
-            Ok(document) => PackedPlan::of(&document),
-            Err(error) => return tracing::error!(%error, "the best plan so far cannot be written"),
-        };
-        let incumbent = Arc::new(NewIncumbent {
-            document,
-            total_time_s: plan.total_time_s,
-            lower_bound_s: plan.lower_bound_s,
-            value: plan.schedule.as_ref().map(|schedule| schedule.value),
-            keep_out_violated: plan.margins.violates_cones(),
+        // Packed when it is stored: of plans that follow one another quickly only the last one is.
+        let incumbent = Arc::new(FoundPlan {
+            plan: plan.clone(),
+            doubts: Arc::clone(&self.doubts),
         });
         // The next progress wakes the recorder, which records both together.
         self.reports.send_if_modified(|report| {
@@ -145,7 +163,7 @@ async fn record_reports(
     mut reports: watch::Receiver<ProgressReport>,
 ) {
     let mut recorded = None;
-    let mut kept: Option<Arc<NewIncumbent>> = None;
+    let mut kept: Option<Arc<FoundPlan>> = None;
     loop {
         let open = reports.changed().await.is_ok();
         let ProgressReport {
@@ -158,9 +176,13 @@ async fn record_reports(
             // Stored once, and again after a failure.
             let fresh =
                 incumbent.filter(|plan| !kept.as_ref().is_some_and(|k| Arc::ptr_eq(k, plan)));
+            let packed = match &fresh {
+                Some(found) => packed(Arc::clone(found)).await,
+                None => None,
+            };
             let written = jobs
                 .store()
-                .progress(&lease, &progress, fresh.as_deref(), now_us());
+                .progress(&lease, &progress, packed.as_ref(), now_us());
             match written.await {
                 Ok(true) => {
                     kept = fresh.or(kept);
@@ -176,6 +198,12 @@ async fn record_reports(
         }
         ends_within(PAUSE, &reports).await;
     }
+}
+
+/// Packs a plan beside the threads of the runtime.
+async fn packed(found: Arc<FoundPlan>) -> Option<NewIncumbent> {
+    let packed = tokio::task::spawn_blocking(move || found.packed()).await;
+    packed.ok().flatten()
 }
 
 fn row(progress: &Progress) -> ProgressRow {

@@ -123,6 +123,7 @@ pub(super) async fn claim(
     now_us: i64,
     events: &mut Vec<NewEvent>,
 ) -> Result<(Vec<Lease>, usize), StoreError> {
+    transaction.read_in_order().await?;
     let candidates: Vec<Candidate> = sql("SELECT sequence, work, targets, fence, memory_bytes, \
          (SELECT count(*) FROM (SELECT 1 FROM jobs WHERE state = 'queued' AND boot_id IS NULL \
          AND parent IS NULL LIMIT $4) AS counted) AS waiting \

@@ -111,6 +111,18 @@ impl Transaction {
         }
         Ok(())
     }
+
+    /// Has rows in the order of an index read from it until its end, as SQLite does anyway. Without this
+    /// Postgres, whose statistics do not know a queue that has filled within a minute, expects a single
+    /// row, and reads and sorts the whole queue for the first few of it.
+    pub(super) async fn read_in_order(&mut self) -> Result<(), StoreError> {
+        if let Self::Postgres(_) = self {
+            sql("SELECT set_config('enable_sort', 'off', true)")
+                .execute(self)
+                .await?;
+        }
+        Ok(())
+    }
 }
 
 impl<'c> From<&'c Database> for Handle<'c> {

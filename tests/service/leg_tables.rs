@@ -153,6 +153,13 @@ fn a_running_table_is_read_stopped_and_cancelled() {
     assert!(rows.len() >= 512 && rows[0]["source"] == "computed");
     let stopped = service.post(&format!("{path}/stop"), &json!({})).json();
     assert_eq!(stopped["state"], "stopped", "{stopped}");
+    assert_eq!(
+        (&stopped["detail"], &stopped["code"]),
+        (
+            &json!("stopped on request before all legs were solved"),
+            &json!(null)
+        )
+    );
     let done = stopped["done"].as_u64().expect("a count");
     let kept = lines(&service.get(&format!("{path}/result")).expect(200));
     assert_eq!(kept.len() as u64, done);

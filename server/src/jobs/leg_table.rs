@@ -9,7 +9,9 @@ use crate::base::clock::now_us;
 use crate::documents::document;
 use crate::documents::leg_query::{self, LegQuery, Pair, Refusal};
 use crate::documents::leg_rows::{LegRow, Source};
+use crate::documents::plan::Interruption;
 use crate::store::{EndCode, Ended, JobRow, JobState, LegCounts, NewTablePart, PackedPlan};
+use slewplan_solver::model::problem::Code;
 use slewplan_solver::run::stop::StopReason;
 use slewplan_solver::tour::planner::LegTimeTable;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -18,6 +20,8 @@ use tokio::runtime::Handle;
 
 /// Number of legs of a part: some tenths of a second.
 const PART: usize = 512;
+/// Legs of so many parts are offered to others at once.
+const OFFERED: usize = 8;
 /// Pause before another try after a failure of the database.
 const RETRY: Duration = Duration::from_millis(500);
 
@@ -45,10 +49,15 @@ fn attempt(query: &[u8], context: &JobContext<'_>, parts: &TableStore<'_>) -> En
     let table = LegTimeTable::of(&query.scenario, query.kind, context.run_of_legs());
     let total = query.pairs.len();
     let known = parts.begun(total, context);
-    let mut complete = true;
+    let (mut complete, mut offered) = (true, 0);
     for first in (0..total).step_by(PART) {
         if known.contains(&first) {
             continue;
+        }
+        if first >= offered {
+            offered = first + OFFERED * PART;
+            let next = query.pairs.part(first, OFFERED * PART);
+            table.offer(&next.iter().map(Pair::places).collect::<Vec<_>>());
         }
         let pairs = query.pairs.part(first, PART);
         let places: Vec<_> = pairs.iter().map(Pair::places).collect();
@@ -70,10 +79,17 @@ fn attempt(query: &[u8], context: &JobContext<'_>, parts: &TableStore<'_>) -> En
     if complete {
         return ended(JobState::Succeeded);
     }
-    let stopped = context.interruption().reason();
+    let (detail, code) = match context.interruption() {
+        Interruption::TimeLimit => ("the time limit passed before all legs were solved", None),
+        Interruption::Request => ("stopped on request before all legs were solved", None),
+        Interruption::Memory { .. } => (
+            "the legs needed more memory than a job may take",
+            Some(EndCode::Problem(Code::MemoryLimit)),
+        ),
+    };
     Ended {
-        detail: Some(stopped.message),
-        code: Some(EndCode::Problem(stopped.code)),
+        detail: Some(detail.to_owned()),
+        code,
         early: true,
         ..ended(JobState::Stopped)
     }

@@ -20,8 +20,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use uuid::Uuid;
 
-/// Number of legs of a part: about a second.
-const PART: usize = 32;
+/// Number of legs of a part: some ten times what it takes to queue and claim it where legs are quick, and
+/// seconds where they are not.
+const PART: usize = 64;
 /// Fewer missing legs are solved before somebody has taken a part of them.
 const LEAST: usize = 4 * PART;
 /// Maximum number of parts of a table; what is before them is left to the job itself.

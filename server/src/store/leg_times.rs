@@ -66,8 +66,7 @@ impl LegSnapshot {
     async fn rows(&mut self, identities: &[&str]) -> Result<Vec<TimeRow>, StoreError> {
         sql(
             "SELECT place AS position, duration_s, certified_lower_bound_s, bound_version, \
-             solve_time_s FROM {asked} {join_leg_times} ON legs.key = wanted \
-             AND solver_version = $2",
+             solve_time_s FROM {asked} {with_leg_times} WHERE solver_version = $2",
         )
         .bind(keys_of(identities))
         .bind(SOLVER_VERSION)

@@ -150,7 +150,7 @@ impl Store {
         let found: Vec<KnownLeg> = sql(concat!(
             "SELECT place, document, trajectory, ",
             leg_columns!(),
-            " FROM {asked} {join_legs} ON key = wanted \
+            " FROM {asked} {with_legs} \
              JOIN (SELECT key AS spacecraft_key, document FROM leg_spacecraft) AS known \
              ON spacecraft_key = spacecraft WHERE solver_version = $2"
         ))

@@ -115,6 +115,14 @@ impl<'a> LegTimeTable<'a> {
         times
     }
 
+    /// Offers the missing legs between pairs of places, which are going to be asked for next, to others, if
+    /// the store of the legs is shared with any.
+    pub fn offer(&self, pairs: &[(Place, Place)]) {
+        if self.kind != LegKind::Certified {
+            self.solver().offer(self.kind, pairs);
+        }
+    }
+
     /// All legs between pairs of places: the known ones, and the missing ones solved and stored. `None`
     /// for legs not reached before the stop signal.
     #[must_use]

@@ -125,6 +125,15 @@ impl<'a> LegSolver<'a> {
         self.contradictions.load(Relaxed) == 0
     }
 
+    /// Offers the legs of a kind between pairs of places to others, which are going to be solved here next.
+    pub(super) fn offer(&self, kind: LegKind, pairs: &[(Place, Place)]) {
+        if self.run.legs.is_shared() {
+            let canonical = self.all_canonical(kind, pairs);
+            let missing = missing_from(&lock(&self.known), &canonical);
+            offer(self.run.legs, kind, pairs, &missing);
+        }
+    }
+
     /// Solves the legs of a kind between pairs of places; `None` for legs not reached before the stop
     /// signal.
     pub(super) fn solved_legs(
@@ -134,10 +143,6 @@ impl<'a> LegSolver<'a> {
     ) -> Vec<Option<TabulatedLeg>> {
         let tell = |done, total| self.report_progress(done, Some(total));
         let mut canonical = self.all_canonical(kind, pairs);
-        if self.run.legs.is_shared() {
-            let missing = missing_from(&lock(&self.known), &canonical);
-            offer(self.run.legs, kind, pairs, &missing);
-        }
         self.solve_missing(kind, &canonical, tell);
         if !self.places.with_cones.cones.is_empty() {
             let legs: Vec<_> = pairs.iter().zip(&canonical).collect();

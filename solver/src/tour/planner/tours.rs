@@ -65,6 +65,7 @@ impl<'a> Tours<'a> {
 
     /// Solves legs with only the conditions of their own ends.
     pub(super) fn solve_free_legs(&self, pairs: &[(Place, Place)]) {
+        self.legs.offer(LegKind::LowerBound, pairs);
         let solved = self.legs.solved_legs(LegKind::LowerBound, pairs);
         let mut free = self.free.write().unwrap_or_else(PoisonError::into_inner);
         for (leg, entry) in pairs.iter().zip(solved) {

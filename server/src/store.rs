@@ -27,6 +27,7 @@ mod legs;
 mod migrations;
 mod notices;
 mod packed;
+mod queue_room;
 mod recent;
 mod results;
 mod retention;
@@ -65,6 +66,7 @@ use database::Database;
 use database::postgres::{COPYING, DEFAULT_CONNECTIONS, PostgresDatabase};
 use database::sqlite::SqliteDatabase;
 use database::statement::sql;
+use queue_room::QueueRoom;
 use recent::RecentPlans;
 use writing::SyncAlarm;
 
@@ -75,6 +77,7 @@ pub(crate) struct Store {
     format_event: FormatEvent,
     alarm: SyncAlarm,
     recent: RecentPlans,
+    queue_room: QueueRoom,
 }
 
 impl Store {
@@ -132,6 +135,7 @@ impl Store {
             format_event,
             alarm,
             recent: RecentPlans::default(),
+            queue_room: QueueRoom::default(),
         };
         store.compare_clocks().await?;
         Ok(store)

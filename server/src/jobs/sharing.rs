@@ -12,6 +12,9 @@ use tokio::time::Instant;
 const ROUND: Duration = Duration::from_secs(5);
 /// Time between two rounds after which the database must have been away.
 const AWAY: Duration = Duration::from_secs(7);
+/// Between a look that finds an expired lease and the end of its process's claim: when the database could only be
+/// read for a while, its process prolongs the lease in this time.
+const DOUBT: Duration = Duration::from_secs(1);
 
 impl Jobs {
     /// Begins to follow what other processes do to the jobs; nothing where there are none.
@@ -104,6 +107,7 @@ async fn take_over(jobs: Jobs, boot_id: String) {
         if !standing.leases_expired {
             continue;
         }
+        tokio::time::sleep(DOUBT).await;
         let lease_now_us = store.lease_clock_us();
         let recovered = store.recover(&boot_id, OtherProcesses::MayLive, lease_now_us);
         match recovered.await {

@@ -34,6 +34,8 @@ use tokio::task::AbortHandle;
 /// Duration of a lease, and the interval between two prolongations.
 pub(super) const LEASE: Duration = Duration::from_secs(10);
 const PROLONGATION: Duration = Duration::from_secs(2);
+/// Pause before another try to prolong a lease after a failure.
+const PROLONGATION_RETRY: Duration = Duration::from_millis(200);
 /// Pause before another try after a failure of the database.
 const RETRY: Duration = Duration::from_millis(500);
 /// Interval between two looks at the queue without a notification.
@@ -367,18 +369,33 @@ pub(super) fn microseconds(time: Duration) -> i64 {
 
 /// Prolongs a lease at intervals; cancels the solve when the lease has been lost.
 async fn prolong(jobs: Jobs, lease: JobRow, stop: StopSignal) {
+    let mut has_failed = false;
     loop {
-        tokio::time::sleep(PROLONGATION).await;
+        let pause = if has_failed {
+            PROLONGATION_RETRY
+        } else {
+            PROLONGATION
+        };
+        tokio::time::sleep(pause).await;
         let lease_until_us = lease_end(jobs.store().lease_clock_us());
         match jobs.store().prolong(&lease, lease_until_us).await {
-            // Another process may have recorded a request, and its notice may be lost.
-            Ok(true) if jobs.store().is_shared() => jobs.apply_requests(&lease.id).await,
-            Ok(true) => {}
             Ok(false) => {
                 stop.cancel();
                 return;
             }
-            Err(error) => tracing::warn!(job_id = lease.id, %error, "lease not prolonged"),
+            Ok(true) => {
+                has_failed = false;
+                // Another process may have recorded a request, and its notice may be lost.
+                if jobs.store().is_shared() {
+                    jobs.apply_requests(&lease.id).await;
+                }
+            }
+            Err(error) => {
+                if !has_failed {
+                    tracing::warn!(job_id = lease.id, %error, "lease not prolonged");
+                }
+                has_failed = true;
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::database::row::{FromRow, Row};
 use super::database::statement::{Handle, sql};
 use super::database::{Transaction, Turn};
+use super::queue_room::newest;
 use super::{Counts, JobRow, JobState, Store, StoreError, Work, events, results};
 use std::ops::RangeInclusive;
 use strum::VariantArray as _;
@@ -94,7 +95,12 @@ impl Store {
         now_us: i64,
     ) -> Result<Submitted, StoreError> {
         let mut transaction = self.begin().await?;
-        transaction.take_turn(Turn::Submission).await?;
+        let newest = newest(&mut *transaction).await?;
+        let has_ample_room = self.queue_room.is_ample(newest, limits.all);
+        // Who looks for a key or counts does so alone, up to the end of its commit.
+        if !has_ample_room || submission.key.is_some() || submission.client.is_some() {
+            transaction.take_turn(Turn::Submission).await?;
+        }
         if let Some((key, fingerprint)) = &submission.key
             && let Some(known) = find_key(&mut transaction, key).await?
         {
@@ -106,9 +112,15 @@ impl Store {
                 Submitted::KeyReused
             });
         }
-        if let Some(refusal) = refusal(&mut transaction, submission, limits).await? {
+        let is_full = !has_ample_room
+            && self.queue_room.count(&mut *transaction, newest).await? >= limits.all;
+        if is_full || exceeds_quota(&mut transaction, submission, limits.client).await? {
             transaction.rollback().await?;
-            return Ok(refusal);
+            return Ok(if is_full {
+                Submitted::QueueFull
+            } else {
+                Submitted::QuotaExceeded
+            });
         }
         let job: JobRow = sql(concat!(
             "INSERT INTO jobs (id, state, work, name, scenario, targets, client, submitted_us, \
@@ -240,7 +252,10 @@ impl Store {
 
     /// Number of queued jobs.
     pub(crate) async fn waiting(&self) -> Result<i64, StoreError> {
-        queued(&self.database).await
+        let (count,) = sql("SELECT count(*) FROM jobs WHERE state = 'queued' AND parent IS NULL")
+            .fetch_one(&self.database)
+            .await?;
+        Ok(count)
     }
 
     /// When the job was submitted that has waited longest of those that are queued; `None` when none is.
@@ -269,30 +284,20 @@ impl Store {
     }
 }
 
-/// Why a job cannot be queued now, if it cannot.
-async fn refusal(
+/// Whether the client of a job has as many queued ones as it may have.
+async fn exceeds_quota(
     transaction: &mut Transaction,
     submission: &Submission,
-    limits: QueueLimits,
-) -> Result<Option<Submitted>, StoreError> {
-    if queued(&mut *transaction).await? >= limits.all {
-        return Ok(Some(Submitted::QueueFull));
-    }
+    limit: i64,
+) -> Result<bool, StoreError> {
     let Some(client) = &submission.client else {
-        return Ok(None);
+        return Ok(false);
     };
     let (own,): (i64,) = sql("SELECT count(*) FROM jobs WHERE client = $1 AND state = 'queued'")
         .bind(client)
         .fetch_one(transaction)
         .await?;
-    Ok((own >= limits.client).then_some(Submitted::QuotaExceeded))
-}
-
-async fn queued<'c>(on: impl Into<Handle<'c>>) -> Result<i64, StoreError> {
-    let (count,) = sql("SELECT count(*) FROM jobs WHERE state = 'queued' AND parent IS NULL")
-        .fetch_one(on)
-        .await?;
-    Ok(count)
+    Ok(own >= limit)
 }
 
 async fn find<'c>(on: impl Into<Handle<'c>>, id: &str) -> Result<Option<JobRow>, StoreError> {

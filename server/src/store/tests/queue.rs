@@ -36,6 +36,30 @@ fn the_queue_takes_exactly_as_many_jobs_as_allowed() {
 }
 
 #[test]
+fn a_queue_that_is_not_counted_far_from_its_limit_takes_no_more() {
+    const LIMIT: u32 = 264;
+    on_a_store(|store| async move {
+        let limits = QueueLimits {
+            all: LIMIT.into(),
+            client: 9,
+        };
+        let mut taken = 0;
+        for number in 0..LIMIT + 2 {
+            let job = Submission {
+                id: format!("00000000-0000-7000-8000-{number:012}"),
+                client: None,
+                ..submission()
+            };
+            let answer = store.submit(&job, limits, 1).await.expect("submitted");
+            taken += u32::from(matches!(answer, Submitted::New(_)));
+        }
+        assert_eq!(taken, LIMIT);
+        assert!(!store.has_room(limits.all).await.expect("counted"));
+        assert!(store.has_room(limits.all + 1).await.expect("counted"));
+    });
+}
+
+#[test]
 fn a_client_at_its_limit_does_not_block_others() {
     let limits = QueueLimits { all: 9, client: 2 };
     on_a_store(|store| async move {

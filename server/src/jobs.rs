@@ -2,6 +2,7 @@
 
 mod active;
 mod desk;
+mod full_queue;
 pub(crate) mod leg_cache;
 pub(crate) mod leg_import;
 mod leg_snapshot;
@@ -24,6 +25,7 @@ pub(crate) use worker::Worker;
 use crate::base::clock::now_us;
 use crate::jobs::active::ActiveJobs;
 use crate::jobs::desk::Desk;
+use crate::jobs::full_queue::FullQueue;
 use crate::jobs::leg_cache::LegCache;
 use crate::jobs::leg_snapshot::LegsAtOnce;
 use crate::jobs::memory::JobMemory;
@@ -48,6 +50,7 @@ struct SharedJobs {
     active: ActiveJobs,
     desk: Desk,
     queue: QueueLimits,
+    full_queue: FullQueue,
     memory: JobMemory,
     /// Whether parts of large tables of legs are offered to other processes.
     spreads_legs: bool,
@@ -66,6 +69,7 @@ impl Jobs {
             active: ActiveJobs::default(),
             desk: Desk::default(),
             queue,
+            full_queue: FullQueue::default(),
             memory: JobMemory::new(memory),
             spreads_legs,
             metrics: Arc::default(),
@@ -124,6 +128,20 @@ impl Jobs {
     /// Memory of the jobs of this process, bytes: what one may need, and all that run together.
     pub(crate) fn memory_limit(&self) -> u64 {
         self.0.memory.limit()
+    }
+
+    /// Whether a further job may be queued, as far as can be said without queueing it. A full queue stays so
+    /// for a moment unless a job is known to have changed: a flood of submissions does not reach the database.
+    pub(crate) async fn have_room(&self) -> Result<bool, StoreError> {
+        let changes = *self.0.changes.borrow();
+        if self.0.full_queue.is_recent(changes) {
+            return Ok(false);
+        }
+        let have_room = self.store().has_room(self.0.queue.all).await?;
+        if !have_room {
+            self.0.full_queue.found(changes);
+        }
+        Ok(have_room)
     }
 
     /// Queues a job.

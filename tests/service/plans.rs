@@ -255,6 +255,17 @@ fn a_list_is_searched_by_parts_of_names_and_identifiers() {
 }
 
 #[test]
+fn a_name_may_be_long() {
+    let service = Service::start();
+    let mut scenario = small();
+    let parts = (1_u64..1_000).map(|n| format!("{:x}", n.wrapping_mul(0x9e37_79b9_7f4a_7c15)));
+    scenario["name"] = json!(parts.collect::<String>());
+    let id = service.submit(&scenario);
+    let job = service.get(&format!("/v1/plans/{id}")).expect(200).json();
+    assert_eq!(job["name"], scenario["name"]);
+}
+
+#[test]
 fn stop_answers_with_the_best_plan_so_far() {
     let service = Service::start_with(&ALONE);
     let id = service.submit(&large());

@@ -3,7 +3,6 @@
 use super::database::row::{FromRow, Row};
 use super::database::statement::{Handle, sql};
 use super::database::{Transaction, Turn};
-use super::queue_room::newest;
 use super::{Counts, JobRow, JobState, Store, StoreError, Work, events, results};
 use std::ops::RangeInclusive;
 use strum::VariantArray as _;
@@ -95,8 +94,7 @@ impl Store {
         now_us: i64,
     ) -> Result<Submitted, StoreError> {
         let mut transaction = self.begin().await?;
-        let newest = newest(&mut *transaction).await?;
-        let has_ample_room = self.queue_room.is_ample(newest, limits.all);
+        let has_ample_room = self.queue_room.is_ample(limits.all);
         // Who looks for a key or counts does so alone, up to the end of its commit.
         if !has_ample_room || submission.key.is_some() || submission.client.is_some() {
             transaction.take_turn(Turn::Submission).await?;
@@ -112,8 +110,8 @@ impl Store {
                 Submitted::KeyReused
             });
         }
-        let is_full = !has_ample_room
-            && self.queue_room.count(&mut *transaction, newest).await? >= limits.all;
+        let is_full =
+            !has_ample_room && self.queue_room.count(&mut *transaction).await? >= limits.all;
         if is_full || exceeds_quota(&mut transaction, submission, limits.client).await? {
             transaction.rollback().await?;
             return Ok(if is_full {
@@ -143,6 +141,12 @@ impl Store {
         .bind(submission.memory_bytes)
         .fetch_one(&mut *transaction)
         .await?;
+        self.queue_room.saw(job.sequence);
+        if has_ample_room && !self.queue_room.is_ample(limits.all) {
+            // Others have submitted many jobs meanwhile.
+            transaction.rollback().await?;
+            return Box::pin(self.submit(submission, limits, now_us)).await;
+        }
         if let Some((key, fingerprint)) = &submission.key {
             sql(
                 "INSERT INTO idempotency_keys (key, fingerprint, job, created_us) \

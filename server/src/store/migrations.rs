@@ -20,7 +20,7 @@ macro_rules! migration {
 }
 
 /// Number, name and statements of every migration, oldest first.
-const HISTORY: [(&str, &str, &str); 18] = [
+const HISTORY: [(&str, &str, &str); 19] = [
     migration!("0001", "service"),
     migration!("0002", "incumbents"),
     migration!("0003", "reversible_legs"),
@@ -39,6 +39,7 @@ const HISTORY: [(&str, &str, &str); 18] = [
     migration!("0060", "claims"),
     migration!("0061", "leg_shards"),
     migration!("0062", "values"),
+    migration!("0063", "long_names"),
 ];
 
 /// What brings a file of SQLite to the schema of this version.
@@ -97,6 +98,7 @@ mod tests {
             "0060 74212811e78bc568",
             "0061 ab0b578c3136576b",
             "0062 b73772fbc555dfca",
+            "0063 ea6ef3970dd1d923",
         ];
         assert_eq!(HISTORY.map(digest), expected);
     }

@@ -15,7 +15,7 @@ const MAX_KEY: usize = 255;
 /// Refuses a submission early while the queue is full; the store checks again. Not for requests
 /// with an idempotency key, which may belong to an existing job.
 pub(in crate::api) async fn check_room(app: &App) -> Result<(), ApiError> {
-    if app.store().has_room(app.jobs().queue_limits().all).await? {
+    if app.jobs().have_room().await? {
         return Ok(());
     }
     Err(queue_full(app))

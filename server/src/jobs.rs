@@ -130,18 +130,15 @@ impl Jobs {
         self.0.memory.limit()
     }
 
-    /// Whether a further job may be queued, as far as can be said without queueing it. A full queue stays so
-    /// for a moment unless a job is known to have changed: a flood of submissions does not reach the database.
+    /// Whether a further job may be queued, as far as can be said without queueing it.
     pub(crate) async fn have_room(&self) -> Result<bool, StoreError> {
+        let limit = self.0.queue.all;
+        if self.store().has_ample_room(limit) {
+            return Ok(true);
+        }
         let changes = *self.0.changes.borrow();
-        if self.0.full_queue.is_recent(changes) {
-            return Ok(false);
-        }
-        let have_room = self.store().has_room(self.0.queue.all).await?;
-        if !have_room {
-            self.0.full_queue.found(changes);
-        }
-        Ok(have_room)
+        let ask = async || Ok(!self.store().has_room(limit).await?);
+        Ok(!self.0.full_queue.is_full(changes, ask).await?)
     }
 
     /// Queues a job.

@@ -54,7 +54,8 @@ pub(crate) struct ServiceSettings {
     pub(crate) connections: usize,
 }
 
-/// Niceness of the solver's threads, so that threads for requests take precedence.
+/// By how much the solver's threads are nicer than the others of their process, so that threads for requests take
+/// precedence.
 const SOLVER_NICENESS: i32 = 10;
 /// Longest wait for blocking threads after the shutdown.
 const RUNTIME_SHUTDOWN: Duration = Duration::from_millis(500);
@@ -212,10 +213,15 @@ async fn await_first_key(store: Store, access: Access) {
     }
 }
 
-/// Lowers the priority of the calling thread (Linux applies niceness per thread).
+/// Lowers the priority of the calling thread, which is one of the solver's.
 fn lower_priority() {
-    if let Err(error) = rustix::process::nice(SOLVER_NICENESS) {
-        tracing::debug!(%error, "the priority of the solver's threads cannot be lowered");
+    be_nicer(SOLVER_NICENESS);
+}
+
+/// Lowers the priority of the calling thread and of those that it will start (Linux applies niceness per thread).
+fn be_nicer(by: i32) {
+    if let Err(error) = rustix::process::nice(by) {
+        tracing::debug!(%error, "the priority of a thread cannot be lowered");
     }
 }
 

@@ -1,6 +1,8 @@
 //! A process that only solves: jobs of a database that it shares with services and other workers.
 
-use super::{ServiceError, lower_priority, on_runtime, open_store, shared_threads, system};
+use super::{
+    ServiceError, be_nicer, lower_priority, on_runtime, open_store, shared_threads, system,
+};
 use crate::api;
 use crate::base::lifecycle::{GRACE, Shutdown};
 use crate::jobs::{Jobs, Worker};
@@ -31,6 +33,8 @@ pub(crate) struct WorkSettings {
     pub(crate) job_memory: u64,
 }
 
+/// Niceness of a worker: services and a database on the same machine, which somebody waits for, take precedence.
+const WORKER_NICENESS: i32 = 5;
 /// A worker queues nothing.
 const NO_QUEUE: QueueLimits = QueueLimits { all: 0, client: 0 };
 
@@ -43,6 +47,7 @@ pub(crate) fn run<E: From<ServiceError>>(
     settings: &WorkSettings,
     tell: impl FnOnce(Option<SocketAddr>) -> Result<(), E>,
 ) -> Result<(), E> {
+    be_nicer(WORKER_NICENESS);
     let threads = settings.threads.and_then(NonZeroUsize::new);
     let pools = shared_threads(threads, settings.jobs)?;
     on_runtime(work(settings, pools, tell))

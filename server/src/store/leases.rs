@@ -175,7 +175,8 @@ impl Store {
         events::append_all(&mut transaction, &told).await?;
         // Nobody has seen these begin: they wait as before.
         recovered.unclaimed = sql("UPDATE jobs SET boot_id = NULL, claimed_until_us = NULL \
-             WHERE sequence IN (SELECT sequence FROM jobs WHERE state = 'queued' \
+             WHERE sequence IN (SELECT sequence FROM jobs \
+             WHERE claimed_until_us IS NOT NULL AND state = 'queued' \
              AND (($2 AND boot_id <> $1) OR claimed_until_us < $3) {skip_locked})")
         .bind(boot_id)
         .bind(others == OtherProcesses::Ended)

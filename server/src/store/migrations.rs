@@ -20,7 +20,7 @@ macro_rules! migration {
 }
 
 /// Number, name and statements of every migration, oldest first.
-const HISTORY: [(&str, &str, &str); 19] = [
+const HISTORY: [(&str, &str, &str); 20] = [
     migration!("0001", "service"),
     migration!("0002", "incumbents"),
     migration!("0003", "reversible_legs"),
@@ -40,6 +40,7 @@ const HISTORY: [(&str, &str, &str); 19] = [
     migration!("0061", "leg_shards"),
     migration!("0062", "values"),
     migration!("0063", "long_names"),
+    migration!("0064", "claims"),
 ];
 
 /// What brings a file of SQLite to the schema of this version.
@@ -99,6 +100,7 @@ mod tests {
             "0061 ab0b578c3136576b",
             "0062 b73772fbc555dfca",
             "0063 ea6ef3970dd1d923",
+            "0064 e96aabef7352f08a",
         ];
         assert_eq!(HISTORY.map(digest), expected);
     }

@@ -69,8 +69,13 @@ impl QueueRoom {
 }
 
 impl Store {
+    /// Whether the queue is certainly far from its limit, as far as this process knows.
+    pub(crate) fn has_ample_room(&self, limit: i64) -> bool {
+        self.queue_room.is_ample(limit)
+    }
+
     /// Whether a further job may be queued with this limit, as far as can be said without queueing it.
     pub(crate) async fn has_room(&self, limit: i64) -> Result<bool, StoreError> {
-        Ok(self.queue_room.is_ample(limit) || self.queue_room.count(&self.database).await? < limit)
+        Ok(self.queue_room.count(&self.database).await? < limit)
     }
 }

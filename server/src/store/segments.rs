@@ -93,8 +93,8 @@ impl Store {
     ) -> Result<u64, StoreError> {
         let mut transaction = self.begin().await?;
         let deleted = sql("DELETE FROM segments WHERE sequence IN \
-             (SELECT segments.sequence FROM segments JOIN jobs ON jobs.sequence = job \
-             WHERE finished_us IS NOT NULL LIMIT $1)")
+             (SELECT sequence FROM segments \
+             WHERE (SELECT finished_us FROM jobs WHERE jobs.sequence = job) IS NOT NULL LIMIT $1)")
         .bind(at_most)
         .execute(&mut *transaction)
         .await?;

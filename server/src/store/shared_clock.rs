@@ -33,7 +33,7 @@ impl Store {
         let look = "SELECT now_us, \
              EXISTS (SELECT 1 FROM jobs WHERE state = 'queued' AND boot_id IS NULL), \
              EXISTS (SELECT 1 FROM jobs WHERE state = 'running' AND lease_until_us < now_us) \
-             OR EXISTS (SELECT 1 FROM jobs WHERE state = 'queued' AND claimed_until_us < now_us) \
+             OR coalesce((SELECT min(claimed_until_us) FROM jobs) < now_us, false) \
              FROM (SELECT CAST(extract(epoch FROM clock_timestamp()) * 1000000 AS bigint) AS now_us) \
              AS clock";
         let (server, jobs_wait, leases_expired): (i64, bool, bool) =

@@ -22,11 +22,15 @@ pub(in crate::store) const DEFAULT_CONNECTIONS: u32 = 10;
 const NOTICE_CONNECTIONS: u32 = 2;
 /// Longest wait for one of them.
 const ACQUIRE_TIMEOUT: Duration = Duration::from_secs(5);
-/// Longest time of a statement, and of a transaction that does nothing: no connection is held by a
-/// process that has stopped in the middle.
-const TIMEOUTS: [(&str, &str); 2] = [
+/// Settings of every connection.
+const SETTINGS: [(&str, &str); 3] = [
+    // Longest time of a statement, and of a transaction that does nothing: no connection is held by a
+    // process that has stopped in the middle.
     ("statement_timeout", "30s"),
     ("idle_in_transaction_session_timeout", "30s"),
+    // A bitmap of a whole queue is made before its first row is read. The statistics do not know a queue that has
+    // filled within a minute, and such plans are chosen for it.
+    ("enable_bitmapscan", "off"),
 ];
 
 /// An open database.
@@ -43,7 +47,7 @@ impl PostgresDatabase {
         options: &PgConnectOptions,
         connections: u32,
     ) -> Result<Database, StoreError> {
-        let mut options = options.clone().options(TIMEOUTS);
+        let mut options = options.clone().options(SETTINGS);
         if options.get_application_name() != Some(COPYING) {
             options = options.application_name(APPLICATION);
         }

@@ -12,7 +12,8 @@ use super::segments;
 use super::worker::{PASSED_OVER, lease_end, microseconds};
 use crate::base::clock::now_us;
 use crate::store::{
-    Claim, Exchange, Exchanged, JobEnd, JobRow, Lease, MemoryRoom, NewLeg, Notice, StoreError,
+    Claim, Exchange, Exchanged, JobEnd, JobRow, JobState, Lease, MemoryRoom, NewLeg, Notice,
+    StoreError,
 };
 use slewplan_solver::run::stop::StopSignal;
 use std::collections::VecDeque;
@@ -61,7 +62,10 @@ impl Desk {
     /// Takes the end of a job, to be stored with the next exchange.
     pub(super) fn put(&self, end: EndedJob) {
         let mut papers = self.papers();
-        papers.pace.ended(end.solved_s);
+        // A cancelled job does not say how long jobs take.
+        if end.end.ended.state != JobState::Cancelled {
+            papers.pace.ended(end.solved_s);
+        }
         papers.ends.push(end);
     }
 

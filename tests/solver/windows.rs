@@ -159,3 +159,19 @@ fn what_is_left_out_has_its_reason() {
     assert!(is(schedule.waits[0].to_s, 101.0));
     assert!(is(plan.flight.passages[0].time_s, 101.0));
 }
+
+#[test]
+fn more_targets_than_programs_carry_are_refused_with_a_window() {
+    let mut spec = pass(Pass {
+        rates: RateConditions::ZeroAboutZ,
+        targets: 61,
+        duration_s: 600.0,
+        seed: 1,
+    });
+    spec.options.time_limit_s = Some(30.0);
+    let Outcome::Failed(problems) = outcome_of(&spec) else {
+        panic!("it is not planned");
+    };
+    let codes: Vec<_> = problems.iter().map(|problem| problem.code).collect();
+    assert_eq!(codes, [Code::ClockNotPlanned]);
+}

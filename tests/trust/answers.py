@@ -54,11 +54,22 @@ def no_success_is_false(scale):
     return [Row("N1", f"plans that do not hold, of {len(scenarios)} problems ({counts})", str(wrong), "0", wrong == 0 and states.get("succeeded", 0) > 0)]
 
 
-def codes_of(path, enumeration):
-    """Variants of an enumeration and their texts, as a macro lists them."""
+def lines_of(path, begin):
+    """The indented lines of an item of a source."""
     text = (ROOT / path).read_text()
-    listed = text[text.index(enumeration) :]
-    return dict(re.findall(r'^ {4}(\w+) = "(\w+)"', listed[: listed.index("\n}")], re.MULTILINE))
+    listed = text[text.index(begin) :]
+    return listed[: listed.index("\n}")]
+
+
+def codes_of(path, enumeration):
+    """Variants of an enumeration and their texts, which are the names in snake case."""
+    names = re.findall(r"^ {4}(\w+),$", lines_of(path, f"enum {enumeration} {{"), re.MULTILINE)
+    return {name: re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower() for name in names}
+
+
+def listed_codes(path, macro):
+    """Variants and texts, as a macro lists them."""
+    return dict(re.findall(r'^ {4}(\w+) = "(\w+)"', lines_of(path, f"\n{macro}! {{"), re.MULTILINE))
 
 
 def texts_of_tests():
@@ -78,9 +89,9 @@ def every_failure_is_named(scale):
     optimiser = (ROOT / "solver/src/nlp/status.rs").read_text().partition("impl NlpStatus")[2].partition("\n}")[0]
     statuses = re.findall(r'(\w+)(?:\(_\))?\)? => "(\w+)"', optimiser)
     for what, codes in {
-        "states of jobs": codes_of("server/src/store/rows.rs", "states! {\n    ///"),
-        "codes of problems": codes_of("solver/src/model/problem.rs", "codes! {\n    ///"),
-        "codes of HTTP errors": codes_of("server/src/api/error.rs", "error_codes! {\n    Mal"),
+        "states of jobs": codes_of("server/src/store/rows.rs", "JobState"),
+        "codes of problems": codes_of("solver/src/model/problem.rs", "Code"),
+        "codes of HTTP errors": listed_codes("server/src/api/error.rs", "error_codes"),
         "statuses of the optimiser": dict(statuses),
     }.items():
         unnamed = [text for name, text in codes.items() if f'"{text}"' not in tests and f"[{text}]" not in tests and f"::{name}" not in tests]

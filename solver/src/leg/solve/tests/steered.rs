@@ -87,6 +87,7 @@ proptest! {
             resolution: Resolution::of(Accuracy::Standard, &dynamics),
         };
         let solution = steered(&leg).expect("a solution");
+        prop_assert_eq!(solution.status, NlpStatus::Constructed);
         let profile = &solution.profile;
         let last = profile.intervals();
         prop_assert_eq!(&solution.intervals, &vec![last]);

@@ -52,16 +52,19 @@ def killed(database, scenario, half):
 
 
 def legs_solved_again(scale):
-    """Legs that are solved again when a job is killed during its search."""
+    """Legs that a job had kept when it was killed in its search, and that are not found again before the next
+    search. Further ones it solves when it needs them."""
     database = scale.database("j5-legs")
     with service(database) as running:
         job = running.submit(long_running())
         running.wait(job, lambda job: job["stage"] == "search", 600.0)
         running.kill()
+    [(kept_legs,)] = database.rows("SELECT count(*) FROM legs")
     with service(database) as running:
         running.wait(job, lambda job: job["attempt"] == 2 and job["stage"] == "search", 600.0)
         figures = running.solver_of(job).request("GET", "/metrics")[1].decode()
-        return int(next(line.split()[-1] for line in figures.splitlines() if 'outcome="miss"' in line))
+        found = next(line.split()[-1] for line in figures.splitlines() if 'outcome="hit"' in line)
+        return max(kept_legs - int(found), 0)
 
 
 @gate("J5")
@@ -112,9 +115,9 @@ def rescued_work_is_reused(scale):
         holds = worst <= 60.0 if judged else None
         return Row("J5", f"{promise}, most of {len(shares)} (median {median:.0f} %)", f"{worst:.0f} %", "60 %", holds, timed=True)
 
-    misses = legs_solved_again(scale)
+    again = legs_solved_again(scale)
     return [
-        Row("J5", "legs solved again after a kill during the search", str(misses), "0", misses == 0),
+        Row("J5", "kept legs that are solved again after a kill during the search", str(again), "0", again == 0),
         row("processor time of the second attempt, least of 3", least, judged=True),
         # With what the neighbours of the machine add: shown, so that the difference is no secret.
         row("each time, of the mean of 3 cold ones", every),

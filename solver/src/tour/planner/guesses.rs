@@ -25,7 +25,8 @@ pub(super) enum InitialGuess {
     Extremals,
     /// Legs around cones, each with only the conditions of its own ends.
     AroundCones,
-    /// Legs from rest to rest: feasible as they are where every place admits rest.
+    /// Legs from rest to rest, from a moving start and to a moving end: feasible as they are where every
+    /// place between admits rest.
     AtRest,
 }
 
@@ -50,14 +51,6 @@ pub(super) fn constructed(places: &Places<'_>, route: &[Place]) -> Option<Vec<Ar
     segments.collect()
 }
 
-/// Whether the conditions at all places of a route admit rest there.
-pub(super) fn admits_rest(places: &Places<'_>, route: &[Place]) -> bool {
-    route.windows(2).all(|pair| {
-        let (from, to) = (places.waypoint(pair[0]), places.waypoint(pair[1]));
-        places.slew(&from, &to).begins_and_ends_at_rest()
-    })
-}
-
 /// The legs of a route joined end to end, and the number of intervals of each; `None` where a leg
 /// from rest to rest has no solution. For [`InitialGuess::Shorter`] see [`extended`].
 pub(super) fn joined(
@@ -72,12 +65,12 @@ pub(super) fn joined(
     for (pair, ends) in route.windows(2).zip(waypoints.windows(2)) {
         let slew = places.slew(&ends[0], &ends[1]);
         let perturbed_eigenaxis = || slew.perturbed_eigenaxis(Perturbation::Near);
-        let solved = |kind| {
+        let solved = |leg: &dyn Fn() -> LegSolution| {
             // Legs of their own pass a place with different rolls.
             let leg = if is_rolled {
                 legs.rest_to_rest_between([&ends[0], &ends[1]])
             } else {
-                legs.leg(kind, pair[0], pair[1])
+                leg()
             };
             leg.duration().map(|_| leg.profile)
         };
@@ -86,8 +79,10 @@ pub(super) fn joined(
             InitialGuess::Extremals => slew
                 .extremal()
                 .unwrap_or_else(|| slew.perturbed_eigenaxis(Perturbation::Far)),
-            InitialGuess::AroundCones => solved(LegKind::LowerBound)?,
-            InitialGuess::AtRest => solved(LegKind::RestToRest)?,
+            InitialGuess::AroundCones => {
+                solved(&|| legs.leg(LegKind::LowerBound, pair[0], pair[1]))?
+            }
+            InitialGuess::AtRest => solved(&|| legs.stopping_leg(pair[0], pair[1]))?,
         };
         guess.append(&leg);
         intervals.push(leg.intervals());

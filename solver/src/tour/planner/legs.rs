@@ -4,6 +4,7 @@
 //! table, between the tables of one solve and, through the store, between solves.
 
 mod solving;
+mod stopping;
 
 use super::Run;
 use super::bounds_by_form::BoundsByForm;
@@ -188,19 +189,6 @@ impl<'a> LegSolver<'a> {
         let free = self.known_or_solved(kind, from, &self.canonical(kind, from, to));
         self.around_cones(kind, (from, to), &free)
             .map_or(free, |around| self.known_or_solved(kind, from, &around))
-    }
-
-    /// The leg from rest to rest around cones between two attitudes, not kept.
-    pub(super) fn rest_to_rest_between(&self, ends: [&Waypoint; 2]) -> LegSolution {
-        let [from, to] = ends.map(|end| self.places.stopped(&end.pinned()));
-        let leg = CanonicalLeg::around_cones(self.places, &from, &to);
-        let solved = solve(self.places, &leg, None, self.stop);
-        self.nlp_solves.fetch_add(solved.solves, Relaxed);
-        let leg = TabulatedLeg {
-            mirrored: leg.mirrored,
-            leg: Arc::new(solved),
-        };
-        leg.beginning_at(&from.attitude)
     }
 
     /// A known leg that begins at a place.

@@ -37,7 +37,7 @@ const PROGRAM_BYTES: u64 = 6 << 10;
 const PROGRAMS: u64 = 2;
 /// Nodes of a search whose legs are independent, bytes per target, what a minute keeps at most, and
 /// in a second of its time on two cores.
-const NODE_BYTES_PER_TARGET: u64 = 300 << 10;
+const NODE_BYTES_PER_TARGET: u64 = 550 << 10;
 const QUICK_NODE_BYTES_PER_SECOND: u64 = 4 << 20;
 /// Nodes and segments of a search whose legs couple, in a second of its time on two cores, bytes.
 const NODE_BYTES_PER_SECOND: u64 = 768 << 10;

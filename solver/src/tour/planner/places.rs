@@ -252,6 +252,12 @@ impl<'a> Places<'a> {
         }
     }
 
+    /// Whether the conditions of a place admit rest with the null-space momentum of the start.
+    pub(super) fn admits_rest(&self, place: Place) -> bool {
+        let there = self.waypoint(place);
+        self.slew(&there, &there).begins_and_ends_at_rest()
+    }
+
     /// A place at full rest with the null-space momentum of the start.
     pub(super) fn at_rest(&self, place: Place) -> Waypoint {
         self.stopped(&self.waypoint(place))

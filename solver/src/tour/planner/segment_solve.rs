@@ -1,6 +1,6 @@
 //! Solves the program of a segment, from one initial guess after the other.
 
-use super::guesses::{InitialGuess, admits_rest, extended, joined};
+use super::guesses::{InitialGuess, extended, joined};
 use super::segment_key::{MAX_SHORT_LEGS, SegmentKind};
 use super::tours::Tours;
 use crate::leg::multiphase::{LegSolution, polish, solve_extended, solve_rolling, solve_through};
@@ -20,12 +20,26 @@ const BEGINNING_GUESSES: [InitialGuess; 3] = [
     InitialGuess::Eigenaxes,
     InitialGuess::Extremals,
 ];
+/// The same where every place on the way is passed at rest, so that nothing but the momenta of a fourth
+/// wheel is free there: legs from rest to rest are a motion that the program can only improve, while
+/// from others it may end above them.
+const STOPPING_PIECE_GUESSES: [InitialGuess; 3] = [
+    InitialGuess::AtRest,
+    InitialGuess::Eigenaxes,
+    InitialGuess::Extremals,
+];
+const STOPPING_BEGINNING_GUESSES: [InitialGuess; 3] = [
+    InitialGuess::Shorter,
+    InitialGuess::AtRest,
+    InitialGuess::Eigenaxes,
+];
 /// Initial guess of a whole tour whose solution as a piece has failed.
 const TOUR_GUESSES: [InitialGuess; 1] = [InitialGuess::AtRest];
-/// Number of guesses tried for a short segment of few targets even if the first one converges: longer
-/// segments start from short ones and would inherit a local minimum. Among many targets one guess
-/// serves: of 960 pieces of two and four legs one ends 1e-3 above the better of both.
-const MIN_GUESSES_OF_SHORT: usize = 2;
+/// Ratio of a leg's time in a motion to the time with the conditions of its own ends from which it is
+/// compared with the leg from rest to rest, and by how much the legs of a motion may exceed those, as a
+/// share of its time: a short leg may pay for what others gain.
+const SUSPICIOUS: f64 = 1.05;
+const NEEDLESS: f64 = 4e-3;
 /// Where rolls are free: starts with different rolls that are compared by rough motions, and how many of
 /// them are solved. Of short segments of few targets, of longer ones, and among many targets.
 const ROLLED_STARTS_OF_SHORT: [usize; 2] = [16, 3];
@@ -38,12 +52,10 @@ impl Tours<'_> {
     pub(super) fn solve_distinct(&self, route: &[Place], kind: SegmentKind) -> LegSolution {
         let short = route.len() - 1 <= MAX_SHORT_LEGS;
         let thorough = short && self.places.needs_all_legs();
-        let min_guesses = if thorough { MIN_GUESSES_OF_SHORT } else { 1 };
-        let guesses = match kind {
-            SegmentKind::Beginning if !short => &BEGINNING_GUESSES[..],
-            SegmentKind::Beginning | SegmentKind::Piece => &PIECE_GUESSES,
-            SegmentKind::Tour => &TOUR_GUESSES,
-        };
+        let guesses = self.initial_guesses(route, kind);
+        // Longer segments start from short ones and would inherit a local minimum. Among many targets
+        // one guess serves: of 960 pieces of two and four legs one ends 1e-3 above the better of both.
+        let min_guesses = if thorough { guesses.len() } else { 1 };
         let starts = match guesses[0] {
             InitialGuess::AtRest => vec![self.places.waypoints(route)],
             _ => self.starts(route, short),
@@ -62,6 +74,14 @@ impl Tours<'_> {
                 best = solution;
             }
         }
+        // A longer beginning has the minimum of the shorter one that it extends.
+        let inherits = kind == SegmentKind::Beginning && !short;
+        if !inherits && let Some((guess, intervals)) = self.with_stopping_legs(route, &best) {
+            let solution = self.solve_guess(route, InitialGuess::Extremals, (&guess, intervals));
+            if solution.improves(&best) {
+                best = solution;
+            }
+        }
         let with_cones = &self.places.with_cones;
         let mut dynamics = &self.places.dynamics;
         if !is_clear(with_cones, &best.profile) && !best.status.is_interrupted() {
@@ -76,6 +96,79 @@ impl Tours<'_> {
             });
         }
         best
+    }
+
+    /// The initial guesses of a segment, in the order in which they are tried.
+    fn initial_guesses(&self, route: &[Place], kind: SegmentKind) -> &'static [InitialGuess] {
+        let short = route.len() - 1 <= MAX_SHORT_LEGS;
+        match (kind, self.stops_along(route)) {
+            (SegmentKind::Tour, _) => &TOUR_GUESSES,
+            (SegmentKind::Beginning, true) if !short => &STOPPING_BEGINNING_GUESSES,
+            (SegmentKind::Beginning, false) if !short => &BEGINNING_GUESSES,
+            (_, true) => &STOPPING_PIECE_GUESSES,
+            (_, false) => &PIECE_GUESSES,
+        }
+    }
+
+    /// Whether all places on the way must be passed at rest, with given rolls.
+    fn stops_along(&self, route: &[Place]) -> bool {
+        let stops = |place: &Place| match place {
+            Place::Target(index) => self.places.scenario.targets()[*index].rests(),
+            Place::Start | Place::End => true,
+        };
+        let on_the_way = route.get(1..route.len() - 1).unwrap_or_default();
+        on_the_way.iter().all(stops)
+            && self
+                .places
+                .waypoints(route)
+                .iter()
+                .all(|place| place.roll.is_none())
+    }
+
+    /// A motion through places that all admit rest, with legs from rest to rest in place of those that
+    /// take longer, and the intervals of its legs; `None` where that makes little difference. A motion
+    /// in which it makes more is hardly ever the fastest.
+    fn with_stopping_legs(
+        &self,
+        route: &[Place],
+        motion: &LegSolution,
+    ) -> Option<(Profile, Vec<usize>)> {
+        let admits_rest = |place: &Place| self.places.admits_rest(*place);
+        if motion.duration().is_none() || !route.iter().all(admits_rest) {
+            return None;
+        }
+        let (mut guess, mut intervals) = (Profile::empty(), Vec::new());
+        let mut node = 0;
+        let mut excess_s = 0.0;
+        for (leg, count) in route.windows(2).zip(&motion.intervals) {
+            let flown = motion.profile.part(node..node + count);
+            node += count;
+            let flown_s = flown.duration();
+            let stopping = self
+                .is_suspicious([leg[0], leg[1]], flown_s)
+                .then(|| self.legs.stopping_leg(leg[0], leg[1]))
+                .filter(|leg| leg.duration().is_some_and(|time_s| time_s < flown_s));
+            if let Some(stopping) = stopping {
+                excess_s += flown_s - stopping.profile.duration();
+                guess.append(&stopping.profile);
+                intervals.push(stopping.intervals.iter().sum());
+            } else {
+                guess.append(&flown);
+                intervals.push(*count);
+            }
+        }
+        (excess_s > NEEDLESS * motion.profile.duration()).then_some((guess, intervals))
+    }
+
+    /// Whether a leg takes so long that it may take longer than from rest to rest.
+    fn is_suspicious(&self, [from, to]: [Place; 2], flown_s: f64) -> bool {
+        let ends = [from, to].map(|place| self.places.waypoint(place));
+        if ends.iter().any(|end| end.roll.is_some()) {
+            return false;
+        }
+        let eigenaxis = self.places.slew(&ends[0], &ends[1]).eigenaxis();
+        let is_slow = eigenaxis.flyable && flown_s > eigenaxis.course.duration();
+        is_slow || self.places.needs_all_legs() && flown_s > SUSPICIOUS * self.leg_bound(from, to)
     }
 
     /// The waypoints of a route, described from the rolls of its starts.
@@ -104,12 +197,21 @@ impl Tours<'_> {
         let Some((guess, intervals)) = self.guess((route, rolled), kind) else {
             return LegSolution::nowhere();
         };
+        self.solve_guess(route, kind, (&guess, intervals))
+    }
+
+    fn solve_guess(
+        &self,
+        route: &[Place],
+        kind: InitialGuess,
+        (guess, intervals): (&Profile, Vec<usize>),
+    ) -> LegSolution {
         self.solves.fetch_add(1, Ordering::Relaxed);
         let dynamics = match kind {
             InitialGuess::AroundCones | InitialGuess::AtRest => &self.places.with_cones,
             _ => &self.places.dynamics,
         };
-        let waypoints = self.signed_waypoints(route, &guess, &intervals);
+        let waypoints = self.signed_waypoints(route, guess, &intervals);
         let solve = match kind {
             InitialGuess::Shorter => solve_extended,
             InitialGuess::Eigenaxes => solve_rolling,
@@ -117,14 +219,17 @@ impl Tours<'_> {
                 solve_through
             }
         };
-        let solution = solve(dynamics, &waypoints, &intervals, &guess, &|| {
+        let solution = solve(dynamics, &waypoints, &intervals, guess, &|| {
             self.stop.reason()
         });
         let failed = solution.duration().is_none() && !solution.status.is_interrupted();
-        if kind == InitialGuess::AtRest && failed && admits_rest(self.places, route) {
+        if kind == InitialGuess::AtRest
+            && failed
+            && route.iter().all(|place| self.places.admits_rest(*place))
+        {
             return LegSolution {
                 status: NlpStatus::Constructed,
-                profile: guess,
+                profile: guess.clone(),
                 intervals,
                 costates: Vec::new(),
                 ..solution

@@ -38,8 +38,8 @@ const TOUR_GUESSES: [InitialGuess; 1] = [InitialGuess::AtRest];
 /// Ratio of a leg's time in a motion to the time with the conditions of its own ends from which it is
 /// compared with the leg from rest to rest, and by how much the legs of a motion may exceed those, as a
 /// share of its time: a short leg may pay for what others gain.
-const SUSPICIOUS: f64 = 1.05;
-const NEEDLESS: f64 = 4e-3;
+const SUSPICIOUS: f64 = 1.015;
+const NEEDLESS: f64 = 6e-3;
 /// Where rolls are free: starts with different rolls that are compared by rough motions, and how many of
 /// them are solved. Of short segments of few targets, of longer ones, and among many targets.
 const ROLLED_STARTS_OF_SHORT: [usize; 2] = [16, 3];

@@ -15,6 +15,7 @@ mod kinds;
 mod labels;
 mod legs;
 mod merging;
+mod minima;
 mod plot;
 mod pointing;
 mod refusals;

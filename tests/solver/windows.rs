@@ -119,6 +119,24 @@ fn a_required_target_out_of_reach_is_named() {
 }
 
 #[test]
+fn a_start_that_moves_does_not_wait() {
+    let mut spec = scenario(vec![at("late", 50.0, &[[140.0, 200.0]])]);
+    spec.targets[0].zero_rate_axes = Some([false, false, true]);
+    spec.targets.push(TargetSpec {
+        windows: None,
+        ..at("any time", 10.0, &[])
+    });
+    for rate in [0.002, 0.004, -0.003] {
+        spec.start.body_rate_rad_s = Some([rate, 0.001, -0.002]);
+        let Outcome::Planned(plan) = outcome_of(&spec) else {
+            panic!("there is a schedule");
+        };
+        let schedule = plan.schedule.expect("a schedule");
+        assert!(schedule.waits.iter().all(|wait| wait.target != "start"));
+    }
+}
+
+#[test]
 fn what_is_left_out_has_its_reason() {
     let valued = |target, value| TargetSpec {
         value: Some(value),

@@ -166,6 +166,13 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     if few {
         tours.solve_free_legs(&pairs);
     }
+    let first = match first {
+        Some(first) if tours.reconsider(&first.order) => {
+            builder.drop_flight();
+            first_tour(&tours, first.order)
+        }
+        first => first,
+    };
     let known: Vec<_> = first.into_iter().collect();
     let settings = search_settings(scenario);
     let known = KnownOrders {

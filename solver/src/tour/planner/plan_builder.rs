@@ -239,7 +239,8 @@ impl<'a> PlanBuilder<'a> {
         *self.last_flight() = Some((order.to_vec(), flight.clone()));
     }
 
-    fn drop_flight(&self) {
+    /// Forgets the flight of an order that is flown otherwise from now on.
+    pub(super) fn drop_flight(&self) {
         *self.last_flight() = None;
     }
 

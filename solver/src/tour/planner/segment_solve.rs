@@ -76,11 +76,8 @@ impl Tours<'_> {
         }
         // A longer beginning has the minimum of the shorter one that it extends.
         let inherits = kind == SegmentKind::Beginning && !short;
-        if !inherits && let Some((guess, intervals)) = self.with_stopping_legs(route, &best) {
-            let solution = self.solve_guess(route, InitialGuess::Extremals, (&guess, intervals));
-            if solution.improves(&best) {
-                best = solution;
-            }
+        if !inherits {
+            best = self.without_needless_time(route, &best).unwrap_or(best);
         }
         let with_cones = &self.places.with_cones;
         let mut dynamics = &self.places.dynamics;
@@ -125,6 +122,17 @@ impl Tours<'_> {
                 .all(|place| place.roll.is_none())
     }
 
+    /// A faster motion from one whose legs take longer than from rest to rest; `None` where there is none.
+    pub(super) fn without_needless_time(
+        &self,
+        route: &[Place],
+        motion: &LegSolution,
+    ) -> Option<LegSolution> {
+        let (guess, intervals) = self.with_stopping_legs(route, motion)?;
+        let solution = self.solve_guess(route, InitialGuess::Extremals, (&guess, intervals));
+        solution.improves(motion).then_some(solution)
+    }
+
     /// A motion through places that all admit rest, with legs from rest to rest in place of those that
     /// take longer, and the intervals of its legs; `None` where that makes little difference. A motion
     /// in which it makes more is hardly ever the fastest.
@@ -134,7 +142,7 @@ impl Tours<'_> {
         motion: &LegSolution,
     ) -> Option<(Profile, Vec<usize>)> {
         let admits_rest = |place: &Place| self.places.admits_rest(*place);
-        if motion.duration().is_none() || !route.iter().all(admits_rest) {
+        if motion.duration().is_none() || self.stop.is_set() || !route.iter().all(admits_rest) {
             return None;
         }
         let (mut guess, mut intervals) = (Profile::empty(), Vec::new());
@@ -168,7 +176,13 @@ impl Tours<'_> {
         }
         let eigenaxis = self.places.slew(&ends[0], &ends[1]).eigenaxis();
         let is_slow = eigenaxis.flyable && flown_s > eigenaxis.course.duration();
-        is_slow || self.places.needs_all_legs() && flown_s > SUSPICIOUS * self.leg_bound(from, to)
+        let alone = || {
+            let known = self
+                .known_free_leg(from, to)
+                .filter(|_| self.places.needs_all_legs());
+            known.and_then(|known| known.leg.solution.least_duration())
+        };
+        is_slow || alone().is_some_and(|alone_s| flown_s > SUSPICIOUS * alone_s)
     }
 
     /// The waypoints of a route, described from the rolls of its starts.

@@ -145,6 +145,33 @@ impl<'a> Tours<'a> {
         smaller.then_some(reverse)
     }
 
+    /// Solves the segments of a tour again that take needless time, now that their legs are known: it was
+    /// solved before them. Whether there was one.
+    pub(super) fn reconsider(&self, order: &[usize]) -> bool {
+        let route = self.places.route(order, true);
+        let route = self.preferred_reverse(&route).unwrap_or(route);
+        let mut faster = false;
+        for places in self.places.split(&route) {
+            let segment = SegmentKey::new(places, SegmentKind::Piece);
+            let known = self.segments.get(&segment);
+            if let Some(better) = known.and_then(|known| self.faster(&segment, &known)) {
+                faster = true;
+                self.segments.put(segment, &Arc::new(better));
+            }
+        }
+        faster
+    }
+
+    /// A faster solution of a segment that was solved before its legs were known; `None` where there is
+    /// none.
+    fn faster(&self, segment: &SegmentKey, known: &LegSolution) -> Option<LegSolution> {
+        let one_stop = |leg: &[Place]| self.places.are_one_stop(leg[0], leg[1]);
+        let route = &segment.route;
+        let has_pauses = route.windows(2).any(one_stop);
+        (segment.kind == SegmentKind::Piece && route.len() > 2 && !has_pauses)
+            .then(|| self.without_needless_time(route, known))?
+    }
+
     fn solve_segments(&self, route: &[Place], kind: SegmentKind) -> Vec<Arc<LegSolution>> {
         let mut solutions = Vec::new();
         let segments = self.places.split(route);
@@ -193,6 +220,7 @@ impl<'a> Tours<'a> {
         let intervals = self.intervals(&segment.route);
         let known = store.get(&name);
         let known = known.and_then(|known| segment_from_store(known, intervals.clone()));
+        let known = known.map(|known| self.faster(segment, &known).unwrap_or(known));
         known.unwrap_or_else(|| {
             let fresh = self.solve_segment(segment);
             // A store entry has no numbers of intervals. A stopped solve may have skipped guesses.

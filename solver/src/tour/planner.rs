@@ -218,6 +218,8 @@ pub fn every_order(scenario: &Scenario, run: Run<'_>) -> Vec<SolvedOrder> {
     let places = Places::of(scenario);
     let solver = LegSolver::new(&places, run, &stop);
     let tours = Tours::new(&places, &solver, &stop);
+    // With them tours are compared, as in the search.
+    tours.solve_free_legs(&tour_pairs(&places));
     // As many alternatives as there are orders; the factorial saturates beyond twenty targets.
     let orders = (1..=scenario.targets().len()).fold(1, usize::saturating_mul);
     exhaustive(&tours, orders, run.pool)

@@ -3,7 +3,7 @@
 
     python3 tests/relations/run.py [--seeds FIRST END] [--targets MOST] [--time-limit S]
 
-The program is that of $SLEWPLAN, or a release build.
+The program is that of $SLEWPLAN, or one built now.
 
 What must not change a plan's duration: another frame of reference, other orders of the targets and of the
 wheels, windows that are always open, a latest end far away. What must not make it longer: no cones, no
@@ -15,18 +15,18 @@ Programs are solved locally, so differences up to ACCEPTED are told and not judg
 
 import argparse
 import copy
-import json
 import math
-import os
-import pathlib
 import random
-import subprocess
 import sys
-import tempfile
+from pathlib import Path
 
 from scenarios import Generator, quaternion, unit
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.append(str(Path(__file__).resolve().parents[1] / "peers"))
+import slewplan  # noqa: E402
+
+# Exit codes with a plan, or with the reasons why there is none.
+ANSWERED = (0, 1, 3, 4)
 # Relative differences that are told, and those that fail.
 TOLD, ACCEPTED = 1e-3, 2e-2
 ALWAYS_S = 1e7
@@ -111,18 +111,10 @@ RELATIONS = [
 ]
 
 
-class Solver:
-    def __init__(self, binary):
-        self.binary = binary
-        self.directory = tempfile.TemporaryDirectory()
-
-    def plan(self, scenario):
-        """The plan, or what is said instead of one."""
-        file = pathlib.Path(self.directory.name, "scenario.json")
-        file.write_text(json.dumps(scenario))
-        command = [self.binary, "solve", str(file), "--progress", "none"]
-        answer = subprocess.run(command, capture_output=True, text=True)
-        return json.loads(answer.stdout) if answer.stdout else {"status": answer.stderr.strip()}
+def plan_of(program, scenario):
+    """The plan, or the answer that says why there is none."""
+    plan, _ = slewplan.run(program, "solve", scenario, (), ANSWERED)
+    return plan
 
 
 def services_s(scenario):
@@ -139,7 +131,7 @@ def has_rolls(scenario):
     return any("pointing" in target for target in scenario["targets"])
 
 
-def broken(scenario, plan, solver, seed):
+def broken(scenario, plan, program, seed):
     """By how much every relation that applies is broken, and the other plan."""
     if not (has_rolls(scenario) or "keep_out" in scenario or "body_rate_rad_s" in scenario["start"]):
         stopping = [leg["rest_to_rest_duration_s"] for leg in plan["legs"]]
@@ -148,7 +140,7 @@ def broken(scenario, plan, solver, seed):
     for change, sign in RELATIONS:
         related = copy.deepcopy(scenario)
         if change(related, random.Random(seed)):
-            other = solver.plan(related)
+            other = plan_of(program, related)
             total = other.get("total_time_s")
             ratio = total / plan["total_time_s"] if total else math.inf
             yield change.__name__.replace("_", " "), difference(sign, ratio), other
@@ -160,19 +152,18 @@ def main():
     parser.add_argument("--targets", type=int, default=5)
     parser.add_argument("--time-limit", type=float, default=20.0)
     options = parser.parse_args()
-    binary = os.environ.get("SLEWPLAN") or str(ROOT / "target" / "release" / "slewplan")
-    solver, table, failures, planned = Solver(binary), {}, [], 0
+    program, table, failures, planned = slewplan.binary(), {}, [], 0
     for seed in range(*options.seeds):
         scenario = Generator(seed).scenario(options.targets)
         scenario["options"] = {"time_limit_s": options.time_limit}
-        plan = solver.plan(scenario)
+        plan = plan_of(program, scenario)
         if plan["status"] == "failed":
             failures.append(f"seed {seed}: {plan['reasons']}")
         if plan["status"] != "optimal":
             continue
         planned += 1
         rolls = has_rolls(scenario)
-        for name, excess, other in broken(scenario, plan, solver, seed):
+        for name, excess, other in broken(scenario, plan, program, seed):
             table.setdefault(name, []).append(excess)
             if excess > TOLD:
                 print(f"    seed {seed}: {name}: {100 * excess:.2f} %, {other['status']}{', free rolls' if rolls else ''}", flush=True)

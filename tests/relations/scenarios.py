@@ -89,8 +89,7 @@ class Generator:
         return found
 
     def start(self, wheels):
-        state, found = self.state, quaternion(unit(self.state, 4))
-        found = {"attitude": found}
+        state, found = self.state, {"attitude": quaternion(unit(self.state, 4))}
         if self.has(MOMENTUM):
             found["wheel_speed_rad_s"] = [self.speed * state.uniform(-0.5, 0.5) * state.choice([0.2, 1]) for _ in range(wheels)]
         if self.has(MOVING_START):

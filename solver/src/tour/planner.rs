@@ -19,6 +19,7 @@ mod leg_trials;
 mod legs;
 mod legs_ahead;
 mod memory;
+mod needless_time;
 mod places;
 mod plan_builder;
 mod proved_legs;
@@ -167,7 +168,7 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
         tours.solve_free_legs(&pairs);
     }
     let first = match first {
-        Some(first) if tours.reconsider(&first.order) => {
+        Some(first) if few && tours.reconsider(&first.order) => {
             builder.drop_flight();
             first_tour(&tours, first.order)
         }

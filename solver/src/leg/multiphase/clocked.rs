@@ -34,8 +34,10 @@ pub(crate) fn solve_clocked(
     solve.set_clock();
     solve.run_passes(from_a_guess(dynamics), stop);
     solve.make_exact(stop);
+    // Where it may not wait, the iterate differs from the start by rounding.
+    let waited = solve.begin.filter(|_| times.may_wait);
     ClockedSolution {
-        begin: solve.begin.unwrap_or(times.start),
+        begin: waited.unwrap_or(times.start),
         motion: solve.solution,
     }
 }

@@ -65,24 +65,18 @@ pub(super) fn joined(
     for (pair, ends) in route.windows(2).zip(waypoints.windows(2)) {
         let slew = places.slew(&ends[0], &ends[1]);
         let perturbed_eigenaxis = || slew.perturbed_eigenaxis(Perturbation::Near);
-        let solved = |leg: &dyn Fn() -> LegSolution| {
-            // Legs of their own pass a place with different rolls.
-            let leg = if is_rolled {
-                legs.rest_to_rest_between([&ends[0], &ends[1]])
-            } else {
-                leg()
-            };
-            leg.duration().map(|_| leg.profile)
-        };
+        let solved = |leg: LegSolution| leg.duration().map(|_| leg.profile);
         let leg = match kind {
             InitialGuess::Shorter | InitialGuess::Eigenaxes => perturbed_eigenaxis(),
             InitialGuess::Extremals => slew
                 .extremal()
                 .unwrap_or_else(|| slew.perturbed_eigenaxis(Perturbation::Far)),
-            InitialGuess::AroundCones => {
-                solved(&|| legs.leg(LegKind::LowerBound, pair[0], pair[1]))?
+            // Legs of their own pass a place with different rolls.
+            InitialGuess::AroundCones | InitialGuess::AtRest if is_rolled => {
+                solved(legs.rest_to_rest_between([&ends[0], &ends[1]]))?
             }
-            InitialGuess::AtRest => solved(&|| legs.stopping_leg(pair[0], pair[1]))?,
+            InitialGuess::AroundCones => solved(legs.leg(LegKind::LowerBound, pair[0], pair[1]))?,
+            InitialGuess::AtRest => solved(legs.stopping_leg(pair[0], pair[1]))?,
         };
         guess.append(&leg);
         intervals.push(leg.intervals());

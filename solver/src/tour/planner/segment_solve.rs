@@ -35,11 +35,6 @@ const STOPPING_BEGINNING_GUESSES: [InitialGuess; 3] = [
 ];
 /// Initial guess of a whole tour whose solution as a piece has failed.
 const TOUR_GUESSES: [InitialGuess; 1] = [InitialGuess::AtRest];
-/// Ratio of a leg's time in a motion to the time with the conditions of its own ends from which it is
-/// compared with the leg from rest to rest, and by how much the legs of a motion may exceed those, as a
-/// share of its time: a short leg may pay for what others gain.
-const SUSPICIOUS: f64 = 1.015;
-const NEEDLESS: f64 = 6e-3;
 /// Where rolls are free: starts with different rolls that are compared by rough motions, and how many of
 /// them are solved. Of short segments of few targets, of longer ones, and among many targets.
 const ROLLED_STARTS_OF_SHORT: [usize; 2] = [16, 3];
@@ -52,7 +47,8 @@ impl Tours<'_> {
     pub(super) fn solve_distinct(&self, route: &[Place], kind: SegmentKind) -> LegSolution {
         let short = route.len() - 1 <= MAX_SHORT_LEGS;
         let thorough = short && self.places.needs_all_legs();
-        let guesses = self.initial_guesses(route, kind);
+        let long_beginning = kind == SegmentKind::Beginning && !short;
+        let guesses = self.initial_guesses(route, kind, long_beginning);
         // Longer segments start from short ones and would inherit a local minimum. Among many targets
         // one guess serves: of 960 pieces of two and four legs one ends 1e-3 above the better of both.
         let min_guesses = if thorough { guesses.len() } else { 1 };
@@ -75,8 +71,7 @@ impl Tours<'_> {
             }
         }
         // A longer beginning has the minimum of the shorter one that it extends.
-        let inherits = kind == SegmentKind::Beginning && !short;
-        if !inherits {
+        if !long_beginning {
             best = self.without_needless_time(route, &best).unwrap_or(best);
         }
         let with_cones = &self.places.with_cones;
@@ -96,14 +91,20 @@ impl Tours<'_> {
     }
 
     /// The initial guesses of a segment, in the order in which they are tried.
-    fn initial_guesses(&self, route: &[Place], kind: SegmentKind) -> &'static [InitialGuess] {
-        let short = route.len() - 1 <= MAX_SHORT_LEGS;
-        match (kind, self.stops_along(route)) {
-            (SegmentKind::Tour, _) => &TOUR_GUESSES,
-            (SegmentKind::Beginning, true) if !short => &STOPPING_BEGINNING_GUESSES,
-            (SegmentKind::Beginning, false) if !short => &BEGINNING_GUESSES,
-            (_, true) => &STOPPING_PIECE_GUESSES,
-            (_, false) => &PIECE_GUESSES,
+    fn initial_guesses(
+        &self,
+        route: &[Place],
+        kind: SegmentKind,
+        long_beginning: bool,
+    ) -> &'static [InitialGuess] {
+        if kind == SegmentKind::Tour {
+            return &TOUR_GUESSES;
+        }
+        match (long_beginning, self.stops_along(route)) {
+            (true, true) => &STOPPING_BEGINNING_GUESSES,
+            (true, false) => &BEGINNING_GUESSES,
+            (false, true) => &STOPPING_PIECE_GUESSES,
+            (false, false) => &PIECE_GUESSES,
         }
     }
 
@@ -113,76 +114,9 @@ impl Tours<'_> {
             Place::Target(index) => self.places.scenario.targets()[*index].rests(),
             Place::Start | Place::End => true,
         };
+        let has_roll = |place: &Place| self.places.waypoint(*place).roll.is_some();
         let on_the_way = route.get(1..route.len() - 1).unwrap_or_default();
-        on_the_way.iter().all(stops)
-            && self
-                .places
-                .waypoints(route)
-                .iter()
-                .all(|place| place.roll.is_none())
-    }
-
-    /// A faster motion from one whose legs take longer than from rest to rest; `None` where there is none.
-    pub(super) fn without_needless_time(
-        &self,
-        route: &[Place],
-        motion: &LegSolution,
-    ) -> Option<LegSolution> {
-        let (guess, intervals) = self.with_stopping_legs(route, motion)?;
-        let solution = self.solve_guess(route, InitialGuess::Extremals, (&guess, intervals));
-        solution.improves(motion).then_some(solution)
-    }
-
-    /// A motion through places that all admit rest, with legs from rest to rest in place of those that
-    /// take longer, and the intervals of its legs; `None` where that makes little difference. A motion
-    /// in which it makes more is hardly ever the fastest.
-    fn with_stopping_legs(
-        &self,
-        route: &[Place],
-        motion: &LegSolution,
-    ) -> Option<(Profile, Vec<usize>)> {
-        let admits_rest = |place: &Place| self.places.admits_rest(*place);
-        if motion.duration().is_none() || self.stop.is_set() || !route.iter().all(admits_rest) {
-            return None;
-        }
-        let (mut guess, mut intervals) = (Profile::empty(), Vec::new());
-        let mut node = 0;
-        let mut excess_s = 0.0;
-        for (leg, count) in route.windows(2).zip(&motion.intervals) {
-            let flown = motion.profile.part(node..node + count);
-            node += count;
-            let flown_s = flown.duration();
-            let stopping = self
-                .is_suspicious([leg[0], leg[1]], flown_s)
-                .then(|| self.legs.stopping_leg(leg[0], leg[1]))
-                .filter(|leg| leg.duration().is_some_and(|time_s| time_s < flown_s));
-            if let Some(stopping) = stopping {
-                excess_s += flown_s - stopping.profile.duration();
-                guess.append(&stopping.profile);
-                intervals.push(stopping.intervals.iter().sum());
-            } else {
-                guess.append(&flown);
-                intervals.push(*count);
-            }
-        }
-        (excess_s > NEEDLESS * motion.profile.duration()).then_some((guess, intervals))
-    }
-
-    /// Whether a leg takes so long that it may take longer than from rest to rest.
-    fn is_suspicious(&self, [from, to]: [Place; 2], flown_s: f64) -> bool {
-        let ends = [from, to].map(|place| self.places.waypoint(place));
-        if ends.iter().any(|end| end.roll.is_some()) {
-            return false;
-        }
-        let eigenaxis = self.places.slew(&ends[0], &ends[1]).eigenaxis();
-        let is_slow = eigenaxis.flyable && flown_s > eigenaxis.course.duration();
-        let alone = || {
-            let known = self
-                .known_free_leg(from, to)
-                .filter(|_| self.places.needs_all_legs());
-            known.and_then(|known| known.leg.solution.least_duration())
-        };
-        is_slow || alone().is_some_and(|alone_s| flown_s > SUSPICIOUS * alone_s)
+        on_the_way.iter().all(stops) && !route.iter().any(has_roll)
     }
 
     /// The waypoints of a route, described from the rolls of its starts.
@@ -211,21 +145,12 @@ impl Tours<'_> {
         let Some((guess, intervals)) = self.guess((route, rolled), kind) else {
             return LegSolution::nowhere();
         };
-        self.solve_guess(route, kind, (&guess, intervals))
-    }
-
-    fn solve_guess(
-        &self,
-        route: &[Place],
-        kind: InitialGuess,
-        (guess, intervals): (&Profile, Vec<usize>),
-    ) -> LegSolution {
         self.solves.fetch_add(1, Ordering::Relaxed);
         let dynamics = match kind {
             InitialGuess::AroundCones | InitialGuess::AtRest => &self.places.with_cones,
             _ => &self.places.dynamics,
         };
-        let waypoints = self.signed_waypoints(route, guess, &intervals);
+        let waypoints = self.signed_waypoints(route, &guess, &intervals);
         let solve = match kind {
             InitialGuess::Shorter => solve_extended,
             InitialGuess::Eigenaxes => solve_rolling,
@@ -233,7 +158,7 @@ impl Tours<'_> {
                 solve_through
             }
         };
-        let solution = solve(dynamics, &waypoints, &intervals, guess, &|| {
+        let solution = solve(dynamics, &waypoints, &intervals, &guess, &|| {
             self.stop.reason()
         });
         let failed = solution.duration().is_none() && !solution.status.is_interrupted();
@@ -243,7 +168,7 @@ impl Tours<'_> {
         {
             return LegSolution {
                 status: NlpStatus::Constructed,
-                profile: guess.clone(),
+                profile: guess,
                 intervals,
                 costates: Vec::new(),
                 ..solution

@@ -223,12 +223,7 @@ impl Chain<'_> {
         if motion.duration().is_none() || !(clear || is_clear(dynamics, &motion.profile)) {
             return Err(NoChain::Unresolved);
         }
-        // The difference is that of rounding where there is nowhere to wait.
-        let delay = if self.waits {
-            (solution.begin - self.departure).max(0.0)
-        } else {
-            0.0
-        };
+        let delay = (solution.begin - self.departure).max(0.0);
         let begins = self.begins(&motion, self.departure + delay);
         let last = begins.len() - 1;
         let is_least = motion.status == NlpStatus::Converged;

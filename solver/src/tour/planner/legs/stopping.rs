@@ -1,6 +1,6 @@
 //! Legs from rest to rest that are parts of a motion through several places.
 
-use super::{LegSolver, end_of, solve};
+use super::{LegSolver, solve};
 use crate::leg::multiphase::LegSolution;
 use crate::model::waypoint::Waypoint;
 use crate::tour::legs::LegKind;
@@ -14,19 +14,21 @@ impl LegSolver<'_> {
     /// The leg between two places from rest to rest; a start or an end that moves keeps its own
     /// conditions.
     pub(in crate::tour::planner) fn stopping_leg(&self, from: Place, to: Place) -> LegSolution {
-        let ends = [from, to];
-        let moving = ends.map(|place| !self.places.admits_rest(place));
-        if moving == [false; 2] {
+        let places = self.places;
+        if [from, to].iter().all(|place| places.admits_rest(*place)) {
             return self.leg(LegKind::RestToRest, from, to);
         }
-        let [begin, end] = [0, 1].map(|i| {
-            let kinds = [LegKind::RestToRest, LegKind::LowerBound];
-            end_of(self.places, kinds[usize::from(moving[i])], ends[i])
+        let [begin, end] = [from, to].map(|place| {
+            if places.admits_rest(place) {
+                places.at_rest(place)
+            } else {
+                places.waypoint(place)
+            }
         });
         // Of neither kind, so that no table has it: known here, and not stored.
-        let leg = CanonicalLeg::around_cones(self.places, &begin, &end);
+        let leg = CanonicalLeg::around_cones(places, &begin, &end);
         self.known(from, &leg).unwrap_or_else(|| {
-            let solved = Arc::new(solve(self.places, &leg, None, self.stop));
+            let solved = Arc::new(solve(places, &leg, None, self.stop));
             self.keep(&leg, &solved, false);
             self.placed(from, solved, leg.mirrored)
         })

@@ -69,9 +69,12 @@ async function journey({ browser, service, must }, way) {
     check(await dialog.getByLabel("ra_deg is").inputValue() === "ra" && await dialog.getByLabel("dec_deg is").inputValue() === "dec", "the columns");
     await clean("desk-import");
     await way.press(page, dialog.getByRole("button", { name: `Add ${COUNT} targets` }));
-    await dialog.waitFor({ state: "detached" });
-    const { targets } = await scenario();
-    check(targets.length === COUNT, `${targets.length} targets`);
+    // A dialog is hidden before its event `close` takes the table into the draft.
+    const { targets } = await eventually(async () => {
+      const taken = await scenario();
+      check(taken.targets?.length === COUNT, `${taken.targets?.length} targets`);
+      return taken;
+    });
     check(JSON.stringify(targets[3]) === JSON.stringify({ id: "arcturus", pointing: { boresight: "camera", ra_dec_deg: [213.915, 19.182] } }), JSON.stringify(targets[3]));
     await eventually(async () => check(await page.locator(".desk-sphere .place.target").count() === COUNT, "targets in the sky"));
   });

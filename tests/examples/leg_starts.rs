@@ -2,10 +2,10 @@
 //! know nothing of it.
 //!
 //! Suites: `suite` (the 300 legs of the random suite), `published` (those of experiment C), and any
-//! number `seed` of general slews:
+//! number of general slews of a seed, or of such with wheels near their limits:
 //!
 //! ```text
-//! leg_starts [--cache FILE] [--legs] [--only TEXT] suite | published | general:SEED:COUNT ...
+//! leg_starts [--cache FILE] [--legs] [--only TEXT] suite | published | general:SEED:COUNT | loaded:SEED:COUNT ...
 //! ```
 //!
 //! `--legs` prints a line for every leg, else only those more than 0.1 % above the best. The best
@@ -89,12 +89,17 @@ fn specs(name: &str) -> Vec<ScenarioSpec> {
             end: None,
             ..experiment_c_spec()
         }],
-        Some("general") => {
-            let seed = number().expect("general:SEED:COUNT");
-            let count = number().expect("general:SEED:COUNT");
-            (0..count).map(|slew| general::slew(seed, slew)).collect()
+        Some("general" | "loaded") => {
+            let seed = number().expect("a seed");
+            let count = number().expect("a count");
+            let slew = if kind == Some("loaded") {
+                general::loaded_slew
+            } else {
+                general::slew
+            };
+            (0..count).map(|number| slew(seed, number)).collect()
         }
-        _ => panic!("suite, published or general:SEED:COUNT, not {name}"),
+        _ => panic!("suite, published, general:SEED:COUNT or loaded:SEED:COUNT, not {name}"),
     }
 }
 

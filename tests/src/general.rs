@@ -14,8 +14,10 @@ use std::f64::consts::PI;
 
 /// Least turn, rad.
 const MIN_TURN: f64 = 0.02;
-/// Greatest wheel speed at the start with stored momentum, as a share of the limit.
+/// Greatest wheel speeds at the start with stored momentum, as shares of the limit: of ordinary and of loaded
+/// wheels.
 const STORED: f64 = 0.25;
+const LOADED: f64 = 0.9;
 
 /// A slew. Of eight, two have limits of the body rate, one has momentum in its wheels and one both.
 ///
@@ -24,13 +26,36 @@ const STORED: f64 = 0.25;
 /// When no wheel speeds are found that the wheels can hold at the target.
 #[must_use]
 pub fn slew(seed: u64, number: u64) -> ScenarioSpec {
+    let kind = match number % 8 {
+        4 | 5 => (true, 0.0),
+        6 => (false, STORED),
+        7 => (true, STORED),
+        _ => (false, 0.0),
+    };
+    held("general", seed, number, kind)
+}
+
+/// A slew with so much momentum that some wheels begin near their limits. Every second one has limits of the
+/// body rate.
+///
+/// # Panics
+///
+/// As [`slew`].
+#[must_use]
+pub fn loaded_slew(seed: u64, number: u64) -> ScenarioSpec {
+    held("loaded", seed, number, (number % 2 == 1, LOADED))
+}
+
+/// One of the slews, with limits of the body rate or without and so much of the wheels' speeds stored, whose
+/// momentum the wheels can hold at the target.
+fn held(suite: &str, seed: u64, number: u64, kind: (bool, f64)) -> ScenarioSpec {
     let mut generator = Generator::new((seed << 32) + number);
     for _ in 0..1000 {
-        let spec = attempt(&mut generator, number);
+        let spec = attempt(&mut generator, kind);
         let scenario = Scenario::try_new(&spec).expect("a valid scenario").scenario;
         if momentum_problems(&scenario).is_empty() {
             return ScenarioSpec {
-                name: Some(format!("general {seed}, slew {number}")),
+                name: Some(format!("{suite} {seed}, slew {number}")),
                 ..spec
             };
         }
@@ -38,7 +63,7 @@ pub fn slew(seed: u64, number: u64) -> ScenarioSpec {
     panic!("slew {number} of seed {seed} cannot hold its momentum");
 }
 
-fn attempt(generator: &mut Generator, number: u64) -> ScenarioSpec {
+fn attempt(generator: &mut Generator, (limited, stored): (bool, f64)) -> ScenarioSpec {
     let size = generator.logarithmic(1.0, 1000.0);
     let acceleration = generator.logarithmic(1e-3, 3e-2);
     let rate = generator.logarithmic(0.01, 0.1);
@@ -49,15 +74,9 @@ fn attempt(generator: &mut Generator, number: u64) -> ScenarioSpec {
         let torque = size * acceleration * generator.between(0.6, 1.5);
         wheel(generator.direction(), inertia, torque, speed)
     });
-    let (limited, stored) = match number % 8 {
-        4 | 5 => (true, false),
-        6 => (false, true),
-        7 => (true, true),
-        _ => (false, false),
-    };
     let speeds = wheels.iter().map(|wheel| {
         let limit = wheel.max_speed_rad_s.expect("every wheel has one");
-        generator.between(-STORED, STORED) * limit
+        generator.between(-stored, stored) * limit
     });
     let speeds = speeds.collect();
     let turn = generator.direction();
@@ -73,7 +92,7 @@ fn attempt(generator: &mut Generator, number: u64) -> ScenarioSpec {
             ..SpacecraftSpec::default()
         },
         start: StateSpec {
-            wheel_speed_rad_s: stored.then_some(speeds),
+            wheel_speed_rad_s: (stored > 0.0).then_some(speeds),
             ..StateSpec::default()
         },
         targets: vec![TargetSpec {

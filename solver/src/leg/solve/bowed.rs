@@ -12,41 +12,75 @@
 //! and begin and end at rest.
 
 use super::LegProblem;
-use super::eigenaxis::Perturbation;
+use super::arrival::Arrival;
 use crate::leg::profile::Profile;
 use crate::model::attitude::Attitude;
-use std::f64::consts::PI;
+use nalgebra::Vector3;
+use std::f64::consts::{PI, TAU};
 
 /// Angle of the bow as a share of the turn, and the largest turn, rad, that counts.
 const BOW: f64 = 0.8;
 const MAX_TURN: f64 = 1.5;
-/// Duration relative to that of the eigenaxis slew.
-const SLOWER: f64 = 1.2;
+/// The long way round is explored up to so many times the turn of the short one, and bowed by so much, rad.
+const LONGEST_WAY: f64 = 4.0;
+const LONG_BOW: f64 = 0.2;
 /// Shares of the duration at which motions are compared.
 const COMPARED: [f64; 3] = [0.25, 0.5, 0.75];
 
-/// A motion bowed to one side, at nodes that are evenly spaced in time.
-pub(super) fn bowed(leg: &LegProblem<'_>, intervals: usize, side: Perturbation) -> Profile {
-    let slew = leg.eigenaxis().lasting(leg.least_duration());
-    let (turn, aside, fastest) = slew.geometry(leg.dynamics);
-    let bow = aside * (side.sign() * BOW * turn.norm().min(MAX_TURN));
-    let duration = SLOWER * fastest;
-    let mut profile = Profile::empty();
-    for node in 0..=intervals {
-        let share = node as f64 / intervals as f64;
-        let moved = share * share * (3.0 - 2.0 * share);
-        // Exactly zero at both ends.
-        let speed = 6.0 * share * (1.0 - share) / duration;
-        let (sin, cos) = (PI * moved).sin_cos();
-        let bend = Attitude::from_rotation_vector(bow * sin);
-        let attitude = leg.from.attitude.retract(turn * moved).then_in_body(&bend);
-        let rate = (bend.to_body(turn) + bow * (PI * cos)) * speed;
-        let wheels = leg.dynamics.wheels_at(&attitude, &rate, leg.null);
-        profile.wheels.push(wheels);
-        profile.attitudes.push(attitude);
+/// A way that is bowed to one side.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bow {
+    /// The turn as a whole, rad, body axes at its beginning.
+    turn: Vector3<f64>,
+    /// By how much it is bowed, rad, across the turn.
+    aside: Vector3<f64>,
+}
+
+impl Bow {
+    /// The ways of a leg that are explored: bowed to four sides, and with stored momentum, which favours one way
+    /// round, the long way, where that counts as arrived.
+    pub(super) fn around(leg: &LegProblem<'_>) -> Vec<Self> {
+        let (turn, aside, _) = leg.eigenaxis().geometry(leg.dynamics);
+        let angle = turn.norm();
+        let other = turn.normalize().cross(&aside);
+        let size = BOW * angle.min(MAX_TURN);
+        let mut ways = [-aside, aside, -other, other]
+            .map(|side| Self {
+                turn,
+                aside: side * size,
+            })
+            .to_vec();
+        let either_way = leg.arrival == Arrival::Rotation && leg.dynamics.has_momentum();
+        if either_way && TAU - angle <= LONGEST_WAY * angle {
+            ways.push(Self {
+                turn: turn * (1.0 - TAU / angle),
+                aside: aside * LONG_BOW,
+            });
+        }
+        ways
     }
-    profile.lengths = vec![duration / intervals as f64; intervals];
-    profile
+
+    /// The motion along the way in a duration, s, at nodes that are evenly spaced in time.
+    pub(super) fn motion(&self, leg: &LegProblem<'_>, intervals: usize, duration: f64) -> Profile {
+        let duration = duration.max(leg.least_duration());
+        let mut profile = Profile::empty();
+        for node in 0..=intervals {
+            let share = node as f64 / intervals as f64;
+            let moved = share * share * (3.0 - 2.0 * share);
+            // Exactly zero at both ends.
+            let speed = 6.0 * share * (1.0 - share) / duration;
+            let (sin, cos) = (PI * moved).sin_cos();
+            let bend = Attitude::from_rotation_vector(self.aside * sin);
+            let along = leg.from.attitude.retract(self.turn * moved);
+            let attitude = along.then_in_body(&bend);
+            let rate = (bend.to_body(self.turn) + self.aside * (PI * cos)) * speed;
+            let wheels = leg.dynamics.wheels_at(&attitude, &rate, leg.null);
+            profile.wheels.push(wheels);
+            profile.attitudes.push(attitude);
+        }
+        profile.lengths = vec![duration / intervals as f64; intervals];
+        profile
+    }
 }
 
 /// How far the ways of two motions with the same beginning are apart: the largest angle between their

@@ -1,10 +1,14 @@
 //! Ordinary spacecraft: every scenario whose momentum the wheels can hold has a verified plan.
 
 use slewplan_solver::model::plan::{Optimality, Outcome};
+use slewplan_solver::model::spec::{
+    AttitudeSpec, ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec,
+};
 use slewplan_solver::tour::legs::LegKind;
 use slewplan_solver::tour::planner::{self, Shard};
 use slewplan_tests::ordinary::{conditioned, scenario};
-use slewplan_tests::solving::{on_threads, planned, scenario_of};
+use slewplan_tests::solving::{on_threads, plan_of, planned, scenario_of};
+use slewplan_tests::wheel;
 
 /// Legs and tours of the suite.
 const LEGS: u64 = 400;
@@ -55,6 +59,43 @@ fn every_tour_is_planned_and_verified() {
         assert_eq!(plan.optimality, Optimality::Optimal, "tour {seed}");
         assert!(plan.largest_open_share().is_some_and(|open| open <= 1.0));
     }
+}
+
+/// Wheels that take minutes to exchange what they store: no program of the leg converges.
+#[test]
+fn a_plan_with_a_constructed_leg_is_not_called_optimal() {
+    let wheel = |axis, inertia, torque| wheel(axis, inertia, torque, 123.743);
+    let spec = ScenarioSpec {
+        spacecraft: SpacecraftSpec {
+            inertia_kg_m2: [
+                [5.405_3e-3, 0.0, 0.0],
+                [0.0, 4.779_3e-3, 0.0],
+                [0.0, 0.0, 5.699_9e-3],
+            ],
+            wheels: vec![
+                wheel([1.0, 0.0, 0.0], 1.575_8e-6, 1.412_5e-5),
+                wheel([0.0, 1.0, 0.0], 1.817_3e-5, 2.508e-6),
+                wheel([0.0, 0.0, 1.0], 3.747_2e-6, 7.825_1e-6),
+                wheel([0.208_29, -0.830_45, -0.516_69], 1.911_7e-5, 9.955_3e-6),
+            ],
+            ..SpacecraftSpec::default()
+        },
+        start: StateSpec {
+            wheel_speed_rad_s: Some(vec![9.299_2, 20.668_7, 10.851_7, -69.188_7]),
+            ..StateSpec::default()
+        },
+        targets: vec![TargetSpec {
+            id: "target".to_owned(),
+            attitude: AttitudeSpec::Quaternion([0.331_27, -0.655_66, -0.041_78, 0.677_22]),
+            ..TargetSpec::default()
+        }],
+        ..ScenarioSpec::default()
+    };
+    let plan = plan_of(&spec);
+    assert_eq!(plan.legs[0].solver_status, "constructed");
+    assert_eq!(plan.optimality, Optimality::Feasible);
+    let certified = plan.certified_lower_bound_s.expect("a bound");
+    assert!((plan.lower_bound_s - certified).abs() < 1e-9 && certified < 0.1 * plan.total_time_s);
 }
 
 #[test]

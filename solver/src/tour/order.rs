@@ -116,10 +116,23 @@ pub enum Evaluation {
 pub enum TourEvaluation {
     /// Duration of the tour in this order, s.
     Solved(f64),
+    /// Duration of a flight in this order, s, that is no minimum: there may be faster ones.
+    Flyable(f64),
     /// The evaluation did not converge; the order may or may not be good.
     Unresolved,
     /// The evaluation was interrupted by the stop signal.
     Stopped,
+}
+
+impl TourEvaluation {
+    /// Duration of the flight that it has found, s.
+    #[must_use]
+    pub fn duration_s(self) -> Option<f64> {
+        match self {
+            Self::Solved(duration_s) | Self::Flyable(duration_s) => Some(duration_s),
+            Self::Unresolved | Self::Stopped => None,
+        }
+    }
 }
 
 /// Costate at the passage of a target: derivative of the tour's duration with respect to each
@@ -241,8 +254,8 @@ pub struct Incumbent<'a> {
 /// Orders that are known before a search.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct KnownOrders<'a> {
-    /// Orders with their durations.
-    pub solved: &'a [SolvedOrder],
+    /// An order that is evaluated.
+    pub evaluated: Option<(&'a [usize], TourEvaluation)>,
     /// Where the search for short orders begins while none is solved.
     pub first: Option<&'a [usize]>,
 }

@@ -156,7 +156,7 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let coupled = !few && (0..scenario.targets().len()).any(|target| tours.couples(target));
     let first = order.clone().filter(|_| !coupled);
     let first = first.and_then(|order| first_tour(&tours, order));
-    if let Some(first) = &first {
+    if let Some((first, _)) = &first {
         builder.announce(first);
         solver.report_bounds(Some(first.duration_s), builder.certified_bound());
     }
@@ -168,16 +168,17 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
         tours.solve_free_legs(&pairs);
     }
     let first = match first {
-        Some(first) if few && tours.reconsider(&first.order) => {
+        Some((first, _)) if few && tours.reconsider(&first.order) => {
             builder.drop_flight();
             first_tour(&tours, first.order)
         }
         first => first,
     };
-    let known: Vec<_> = first.into_iter().collect();
     let settings = search_settings(scenario);
     let known = KnownOrders {
-        solved: &known,
+        evaluated: first
+            .as_ref()
+            .map(|(first, tour)| (first.order.as_slice(), *tour)),
         first: order.as_deref(),
     };
     let found = search(&tours, known, &settings, run.pool, &stop, &builder);

@@ -96,10 +96,11 @@ pub fn search(
         tree: SearchTree::new(model, known.first, settings, stop),
         reporter: SearchReporter::new(observer),
     };
-    for order in known.solved {
-        let answer = TourEvaluation::Solved(order.duration_s);
-        search.tree.record_candidate(&order.order, answer);
-        search.reporter.skip(order.duration_s);
+    if let Some((order, answer)) = known.evaluated {
+        search.tree.record_candidate(order, answer);
+        if let Some(duration_s) = answer.duration_s() {
+            search.reporter.skip(duration_s);
+        }
     }
     let mut end = search
         .evaluate_candidates()
@@ -224,7 +225,9 @@ impl OrderSearch<'_> {
             TaskResult::Tour(TourEvaluation::Solved(duration_s)) => {
                 self.tree.leaf_solved(&node, duration_s);
             }
-            TaskResult::Tour(TourEvaluation::Unresolved) => self.tree.leaf_unresolved(&node),
+            TaskResult::Tour(
+                answer @ (TourEvaluation::Flyable(_) | TourEvaluation::Unresolved),
+            ) => self.tree.leaf_unresolved(&node, answer.duration_s()),
             TaskResult::Prefix(Evaluation::Stopped) | TaskResult::Tour(TourEvaluation::Stopped) => {
                 self.tree.put_back(node);
             }
@@ -252,7 +255,11 @@ fn evaluate_order(model: &dyn TourModel, order: &[usize], stop: &StopSignal) -> 
     }
     match model.tour(order) {
         // A duration that is not finite is no result.
-        TourEvaluation::Solved(duration_s) if !duration_s.is_finite() => TourEvaluation::Unresolved,
+        TourEvaluation::Solved(duration_s) | TourEvaluation::Flyable(duration_s)
+            if !duration_s.is_finite() =>
+        {
+            TourEvaluation::Unresolved
+        }
         answer => answer,
     }
 }

@@ -26,10 +26,12 @@ pub(super) fn first_order(places: &Places<'_>, stop: &StopSignal) -> Option<Vec<
 }
 
 /// Solves the tour of an order; `None` when it does not converge or the solve is stopped.
-pub(super) fn first_tour(tours: &Tours<'_>, order: Vec<usize>) -> Option<SolvedOrder> {
+pub(super) fn first_tour(
+    tours: &Tours<'_>,
+    order: Vec<usize>,
+) -> Option<(SolvedOrder, TourEvaluation)> {
     tours.load_legs(&order);
-    match tours.tour(&order) {
-        TourEvaluation::Solved(duration_s) => Some(SolvedOrder { order, duration_s }),
-        TourEvaluation::Unresolved | TourEvaluation::Stopped => None,
-    }
+    let evaluation = tours.tour(&order);
+    let duration_s = evaluation.duration_s()?;
+    Some((SolvedOrder { order, duration_s }, evaluation))
 }

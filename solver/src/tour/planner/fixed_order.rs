@@ -89,7 +89,7 @@ fn solve_admitted(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: R
         tours.solve_free_legs(&pairs);
     }
     match tours.tour(order) {
-        TourEvaluation::Solved(duration_s) => {
+        TourEvaluation::Solved(duration_s) | TourEvaluation::Flyable(duration_s) => {
             let order = order.to_vec();
             let solved = SolvedOrder { order, duration_s };
             let bounds = route.windows(2).map(|leg| tours.pair_bound(leg[0], leg[1]));

@@ -309,10 +309,7 @@ impl<'a> Tours<'a> {
 
     /// The duration as a lower bound; a constructed flight is no minimum and gives none.
     fn evaluation(&self, route: &[Place], segments: &[Arc<LegSolution>]) -> Evaluation {
-        if segments
-            .iter()
-            .any(|solution| solution.status == NlpStatus::Constructed)
-        {
+        if are_constructed(segments) {
             return Evaluation::Unresolved;
         }
         match self.duration(route, segments) {
@@ -411,12 +408,20 @@ impl TourModel for Tours<'_> {
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {
         let route = self.places.route(order, true);
-        match self.duration(&route, &self.solve_route(&route)) {
+        let segments = self.solve_route(&route);
+        match self.duration(&route, &segments) {
+            Ok(duration) if are_constructed(&segments) => TourEvaluation::Flyable(duration),
             Ok(duration) => TourEvaluation::Solved(duration),
             Err(status) if status.is_interrupted() => TourEvaluation::Stopped,
             Err(_) => TourEvaluation::Unresolved,
         }
     }
+}
+
+/// Whether a part of a flight was constructed, not solved for the least duration.
+fn are_constructed(segments: &[Arc<LegSolution>]) -> bool {
+    let mut segments = segments.iter();
+    segments.any(|solution| solution.status == NlpStatus::Constructed)
 }
 
 #[cfg(test)]

@@ -90,18 +90,20 @@ impl SearchTree {
 
     /// Records an order that was evaluated before the search reached it.
     pub(super) fn record_candidate(&mut self, order: &[usize], answer: TourEvaluation) {
-        let duration = match answer {
+        let least = match answer {
             TourEvaluation::Stopped => return,
-            TourEvaluation::Unresolved => None,
+            TourEvaluation::Unresolved | TourEvaluation::Flyable(_) => None,
             TourEvaluation::Solved(duration_s) => Some(duration_s),
         };
         self.statistics.tours += 1;
-        match duration {
-            Some(duration_s) => self.offer(order, duration_s),
-            None => self.statistics.tours_unresolved += 1,
+        if let Some(duration_s) = answer.duration_s() {
+            self.offer(order, duration_s);
+        }
+        if least.is_none() {
+            self.statistics.tours_unresolved += 1;
         }
         let order = self.either_way(order);
-        self.tried.insert(order, duration);
+        self.tried.insert(order, least);
     }
 
     /// The pair bounds.
@@ -327,11 +329,14 @@ impl SearchTree {
         self.tried.insert(order, Some(duration_s));
     }
 
-    /// Records that a leaf did not resolve.
-    pub(super) fn leaf_unresolved(&mut self, node: &SearchNode) {
+    /// Records that a leaf did not resolve, with the duration of a flight where there is one.
+    pub(super) fn leaf_unresolved(&mut self, node: &SearchNode, flyable_s: Option<f64>) {
         self.statistics.nodes_explored += 1;
         self.statistics.tours += 1;
         self.statistics.tours_unresolved += 1;
+        if let Some(duration_s) = flyable_s {
+            self.offer(&node.prefix, duration_s);
+        }
         self.lose(node.bound);
         let order = self.either_way(&node.prefix);
         self.tried.insert(order, None);

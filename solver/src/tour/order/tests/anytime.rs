@@ -1,5 +1,6 @@
 //! Results of searches that end early, and reports of running searches.
 
+use super::models::SLOW;
 use super::{RandomModel, alternatives, pool, run};
 use crate::model::order_rules::OrderRules;
 use crate::run::progress::{Progress, Silent, Stage};
@@ -244,6 +245,31 @@ fn a_search_in_which_nothing_resolves_has_a_bound_and_no_order() {
         let result = run(&model, &alternatives(1));
         assert_eq!((&result.best, result.complete), (&None, false));
         assert!(result.lower_bound_s > 0.0 && result.lower_bound_s <= truth);
+    }
+}
+
+#[test]
+fn a_flight_that_is_no_minimum_is_found_and_closes_no_order() {
+    for seed in 0..10 {
+        let mut model = RandomModel::new(4, seed % 2 == 0, seed);
+        let truth = optimum(&model);
+        model.fails = |order| order.len() == 4;
+        model.flyable = true;
+        let result = run(&model, &alternatives(0));
+        let found = result.best.as_ref().expect("a flight").duration_s;
+        assert!((found - SLOW * truth).abs() < 1e-9 * found, "seed {seed}");
+        assert!(result.lower_bound_s <= truth + 1e-9);
+        assert!(!result.complete && !result.best_is_proven(0.0));
+        // Nor where it is known before the search.
+        let known = [0, 1, 2, 3];
+        let settings = alternatives(0);
+        let first = KnownOrders {
+            evaluated: Some((&known, model.tour(&known))),
+            first: None,
+        };
+        let stop = StopSignal::new();
+        let again = search(&model, first, &settings, &pool(1), &stop, &Silent);
+        assert!(!again.complete && again.lower_bound_s <= truth + 1e-9);
     }
 }
 

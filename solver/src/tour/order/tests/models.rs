@@ -11,6 +11,9 @@ pub(in crate::tour::order) fn unit(random: &mut SplitMix) -> f64 {
 
 /// Legs with random costs, and a random penalty on every two consecutive legs.
 ///
+/// Duration of a flight that is no minimum, relative to the least one.
+pub(in crate::tour::order) const SLOW: f64 = 3.0;
+
 /// The pair bounds are the costs without penalties. The bound of a prefix contains a share of the
 /// penalties inside it: it is admissible, and not tight.
 pub(in crate::tour::order) struct RandomModel {
@@ -24,6 +27,8 @@ pub(in crate::tour::order) struct RandomModel {
     pub(in crate::tour::order) known_share: f64,
     /// Orders and prefixes for which this holds do not resolve.
     pub(in crate::tour::order) fails: fn(&[usize]) -> bool,
+    /// Whether there is a slow flight in such an order.
+    pub(in crate::tour::order) flyable: bool,
     /// Targets with penalties.
     pub(in crate::tour::order) couples: fn(usize) -> bool,
     symmetric: bool,
@@ -46,6 +51,7 @@ impl RandomModel {
             rules: OrderRules::none(targets),
             known_share: 0.7,
             fails: |_| false,
+            flyable: false,
             couples: |_| true,
             symmetric: false,
         }
@@ -227,9 +233,11 @@ impl TourModel for RandomModel {
     fn tour(&self, order: &[usize]) -> TourEvaluation {
         assert_eq!(order.len(), self.targets);
         assert!(self.rules.admits(order));
-        if (self.fails)(order) {
-            return TourEvaluation::Unresolved;
+        let least_s = self.cost(order, self.has_end, 1.0);
+        match (self.fails)(order) {
+            false => TourEvaluation::Solved(least_s),
+            true if self.flyable => TourEvaluation::Flyable(SLOW * least_s),
+            true => TourEvaluation::Unresolved,
         }
-        TourEvaluation::Solved(self.cost(order, self.has_end, 1.0))
     }
 }

@@ -21,9 +21,9 @@ use std::f64::consts::{PI, TAU};
 /// Angle of the bow as a share of the turn, and the largest turn, rad, that counts.
 const BOW: f64 = 0.8;
 const MAX_TURN: f64 = 1.5;
-/// The long way round is explored up to so many times the turn of the short one, and bowed by so much, rad.
+/// The long way round is explored up to so many times the turn of the short one, and bowed by so much to either side, rad.
 const LONGEST_WAY: f64 = 4.0;
-const LONG_BOW: f64 = 0.2;
+const LONG_BOW: f64 = 0.5;
 /// Shares of the duration at which motions are compared.
 const COMPARED: [f64; 3] = [0.25, 0.5, 0.75];
 
@@ -52,10 +52,10 @@ impl Bow {
             .to_vec();
         let either_way = leg.arrival == Arrival::Rotation && leg.dynamics.has_momentum();
         if either_way && TAU - angle <= LONGEST_WAY * angle {
-            ways.push(Self {
+            ways.extend([LONG_BOW, -LONG_BOW].map(|size| Self {
                 turn: turn * (1.0 - TAU / angle),
-                aside: aside * LONG_BOW,
-            });
+                aside: aside * size,
+            }));
         }
         ways
     }

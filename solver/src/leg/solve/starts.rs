@@ -32,6 +32,8 @@ const MAX_GAP_WITH_MOMENTUM: f64 = 0.03;
 /// near their limits were more than 0.5 % too slow, eighteen times, it was larger but for one.
 const EXPLORED_GAP: f64 = 0.07;
 const EXPLORED_GAP_WITH_MOMENTUM: f64 = 0.15;
+/// Relative gap to a lower bound above which the best two of them are solved.
+const WIDE_GAP: f64 = 0.4;
 /// Intervals of the rough motions that tell where a minimum may be.
 pub(super) const ROUGH_INTERVALS: usize = 8;
 /// A motion along a bowed way begins so many times as long as the best one.
@@ -93,13 +95,16 @@ impl<'a> Starts<'a> {
         (best, self.solves)
     }
 
-    fn solve(&mut self, leg: &LegProblem<'_>, guess: &Profile) {
+    /// Solves from a guess; whether there is a solution.
+    fn solve(&mut self, leg: &LegProblem<'_>, guess: &Profile) -> bool {
         let solution = leg.solve_from(guess, self.stop);
+        let converged = solution.duration().is_some();
         self.solves += 1;
         let best = self.best.as_ref();
         if best.is_none_or(|best| solution.improves(best)) {
             self.best = Some(solution);
         }
+        converged
     }
 
     /// Whether the best duration is so close to the bound that no other guess is worth its time, or
@@ -120,8 +125,8 @@ impl<'a> Starts<'a> {
             || (self.stop)().is_some()
     }
 
-    /// Solves roughly for motions along bowed ways, and then from the fastest one of those that lead elsewhere
-    /// than the best so far, where it may become faster.
+    /// Solves roughly for motions along bowed ways, and then from the fastest of those that lead elsewhere than
+    /// the best so far, where they may become faster; from all of them while there is no solution.
     fn explore(&mut self) {
         let known = self.best.as_ref().and_then(LegSolution::duration);
         let lasting = SLOWER * known.unwrap_or_else(|| self.leg.eigenaxis().course.duration());
@@ -136,17 +141,31 @@ impl<'a> Starts<'a> {
             let guess = way.motion(self.leg, rough_intervals, lasting);
             Some((self.rough_elsewhere(&guess)?, way))
         });
-        let fastest = rough.min_by(|(one, _), (other, _)| one.total_cmp(other));
-        let Some((_, way)) = fastest.filter(|(rough, _)| {
-            known.is_none_or(|known| *rough <= PROMISING * known) && (self.stop)().is_none()
-        }) else {
-            return;
-        };
-        self.solve(
-            self.leg,
-            &way.motion(self.leg, self.leg.intervals(), lasting),
-        );
-        // The bow is far from what becomes of it, and there may be a better minimum beside the first.
+        let mut rough: Vec<_> = rough.collect();
+        rough.sort_by(|((one, _), _), ((other, _), _)| one.total_cmp(other));
+        let most = if self.are_within(WIDE_GAP) { 1 } else { 2 };
+        let mut tried: Vec<Profile> = Vec::new();
+        for ((rough, motion), way) in rough {
+            let known = self.best.as_ref().and_then(LegSolution::duration);
+            let is_enough = |known| tried.len() >= most || rough > PROMISING * known;
+            if known.is_some_and(is_enough) || (self.stop)().is_some() {
+                return;
+            }
+            if tried.iter().all(|other| apart(&motion, other) > ELSEWHERE) {
+                let lasting = SLOWER * known.unwrap_or(rough);
+                let guess = way.motion(self.leg, self.leg.intervals(), lasting);
+                if self.follow(&guess, known) {
+                    tried.push(motion);
+                }
+            }
+        }
+    }
+
+    /// Solves from a guess, and once more from where that ends if it is clearly faster than what is known, s: a
+    /// bow is far from what becomes of it, and there may be a better minimum beside the first. Whether the guess
+    /// leads to a solution.
+    fn follow(&mut self, guess: &Profile, known: Option<f64>) -> bool {
+        let converged = self.solve(self.leg, guess);
         let leaps = |found| known.is_none_or(|known| found < (1.0 - LEAP) * known);
         let best = self.best.as_ref();
         let found = best.filter(|best| best.duration().is_some_and(leaps));
@@ -155,17 +174,18 @@ impl<'a> Starts<'a> {
         {
             self.solve(self.leg, &found);
         }
+        converged
     }
 
-    /// The duration, s, of the rough motion from a guess; `None` where there is none, or it leads where the
-    /// best motion is.
-    fn rough_elsewhere(&self, guess: &Profile) -> Option<f64> {
+    /// The duration, s, and the rough motion from a guess; `None` where there is none, or it leads where the best
+    /// motion is.
+    fn rough_elsewhere(&self, guess: &Profile) -> Option<(f64, Profile)> {
         let (waypoints, intervals) = (self.leg.waypoints(guess), [guess.intervals()]);
         let rough = StagedSolve::rough(self.leg.dynamics, &waypoints, &intervals, guess, self.stop);
         let duration = rough.duration()?;
         let best = self.best.as_ref().filter(|best| best.duration().is_some());
         best.is_none_or(|best| apart(rough.motion(), &best.profile) > ELSEWHERE)
-            .then_some(duration)
+            .then(|| (duration, rough.motion().clone()))
     }
 
     /// Solves once more with the intervals that the best solution needs, where it has clearly fewer

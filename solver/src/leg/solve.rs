@@ -127,6 +127,12 @@ impl LegProblem<'_> {
         self.resolution.intervals_of(self.dynamics, turn)
     }
 
+    /// Whether a turn by more than half a turn counts as arrived and may be the faster one: stored momentum
+    /// favours one way round.
+    fn may_go_the_long_way(&self) -> bool {
+        self.arrival == Arrival::Rotation && self.dynamics.has_momentum()
+    }
+
     /// A leg of the same spacecraft between other waypoints.
     pub(crate) fn between<'e>(&'e self, from: &'e Waypoint, to: &'e Waypoint) -> LegProblem<'e> {
         LegProblem { from, to, ..*self }

@@ -12,7 +12,6 @@
 //! and begin and end at rest.
 
 use super::LegProblem;
-use super::arrival::Arrival;
 use crate::leg::profile::Profile;
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
@@ -21,7 +20,8 @@ use std::f64::consts::{PI, TAU};
 /// Angle of the bow as a share of the turn, and the largest turn, rad, that counts.
 const BOW: f64 = 0.8;
 const MAX_TURN: f64 = 1.5;
-/// The long way round is explored up to so many times the turn of the short one, and bowed by so much to either side, rad.
+/// The long way round is explored up to so many times the turn of the short one, and bowed by so much, rad, to
+/// either side.
 const LONGEST_WAY: f64 = 4.0;
 const LONG_BOW: f64 = 0.5;
 /// Shares of the duration at which motions are compared.
@@ -37,10 +37,9 @@ pub(super) struct Bow {
 }
 
 impl Bow {
-    /// The ways of a leg that are explored: bowed to four sides, and with stored momentum, which favours one way
-    /// round, the long way, where that counts as arrived.
+    /// The ways of a leg that are explored: bowed to four sides, and the long way round, where that may be faster.
     pub(super) fn around(leg: &LegProblem<'_>) -> Vec<Self> {
-        let (turn, aside, _) = leg.eigenaxis().geometry(leg.dynamics);
+        let (turn, aside) = leg.eigenaxis().geometry(leg.dynamics);
         let angle = turn.norm();
         let other = turn.normalize().cross(&aside);
         let size = BOW * angle.min(MAX_TURN);
@@ -50,8 +49,7 @@ impl Bow {
                 aside: side * size,
             })
             .to_vec();
-        let either_way = leg.arrival == Arrival::Rotation && leg.dynamics.has_momentum();
-        if either_way && TAU - angle <= LONGEST_WAY * angle {
+        if leg.may_go_the_long_way() && TAU - angle <= LONGEST_WAY * angle {
             ways.extend([LONG_BOW, -LONG_BOW].map(|size| Self {
                 turn: turn * (1.0 - TAU / angle),
                 aside: aside * size,

@@ -34,7 +34,7 @@ pub(crate) enum Perturbation {
 }
 
 impl Perturbation {
-    pub(super) fn sign(self) -> f64 {
+    fn sign(self) -> f64 {
         match self {
             Self::Near => 1.0,
             Self::Far => -1.0,
@@ -186,10 +186,10 @@ impl EigenaxisSlew {
         (across + across.cross(&self.axis)).normalize()
     }
 
-    /// Angle and axis, the direction to one side, and the duration, s.
-    pub(super) fn geometry(&self, dynamics: &Dynamics) -> (Vector3<f64>, Vector3<f64>, f64) {
+    /// The turn, rad, and the direction across it to one side.
+    pub(super) fn geometry(&self, dynamics: &Dynamics) -> (Vector3<f64>, Vector3<f64>) {
         let turn = self.axis * self.course.angle();
-        (turn, self.aside(dynamics), self.course.duration())
+        (turn, self.aside(dynamics))
     }
 
     /// The slew sampled at its nodes, as a starting guess; it has to take some time.

@@ -239,10 +239,10 @@ fn finer<'a>(leg: &LegProblem<'a>, solution: &LegSolution) -> Option<LegProblem<
     })
 }
 
-/// The end with the quaternion sign to which the body turns by more than half a turn, where either
-/// sign counts and momentum may make that way the faster one.
+/// The end with the quaternion sign to which the body turns by more than half a turn, where that way may be the
+/// faster one.
 fn long_way_round(leg: &LegProblem<'_>) -> Option<Waypoint> {
-    if leg.arrival != Arrival::Rotation || !leg.dynamics.has_momentum() {
+    if !leg.may_go_the_long_way() {
         return None;
     }
     let short = leg.arrival.signed(&leg.to.attitude, &leg.from.attitude);

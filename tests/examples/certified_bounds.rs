@@ -32,6 +32,7 @@ const FURTHER: &str = "further spacecraft, momentum";
 struct Share {
     boxed: Option<f64>,
     strongest: Option<f64>,
+    is_confirmed: bool,
 }
 
 fn main() {
@@ -97,14 +98,14 @@ fn tour(name: &str, spec: &ScenarioSpec) {
     let begin = Instant::now();
     let StrongestBounds {
         legs: strongest,
-        tour_s,
+        tour: strongest_tour,
     } = on_threads(2, |run| strongest_bounds(&scenario_of(spec), &legs, run));
     let time = begin.elapsed().as_secs_f64();
     let share = |bound: Option<f64>| bound.map_or(f64::NAN, |bound| bound / plan.total_time_s);
     println!(
         "{name}: tour {:.4}, strongest {:.4}, in {time:.3} s",
         share(plan.certified_lower_bound_s),
-        share(tour_s)
+        share(strongest_tour.map(|tour| tour.bound_s))
     );
     let bounds = plan
         .legs
@@ -114,7 +115,8 @@ fn tour(name: &str, spec: &ScenarioSpec) {
             boxed: leg
                 .certified_lower_bound_s
                 .map(|bound| bound / leg.duration_s),
-            strongest: strongest.map(|bound| bound / leg.duration_s),
+            strongest: strongest.map(|bound| bound.bound_s / leg.duration_s),
+            is_confirmed: strongest.is_some_and(|bound| bound.is_confirmed),
         });
     report(
         &format!("its {} legs", plan.legs.len()),
@@ -141,7 +143,8 @@ fn shares(spec: &ScenarioSpec, rows: &[LegRow]) -> Vec<Share> {
         .zip(bounds.legs)
         .map(|(row, strongest)| Share {
             boxed: share(row.certified_lower_bound_s, row),
-            strongest: share(strongest, row),
+            strongest: share(strongest.map(|bound| bound.bound_s), row),
+            is_confirmed: strongest.is_some_and(|bound| bound.is_confirmed),
         })
         .collect()
 }
@@ -166,7 +169,8 @@ fn report(name: &str, shares: &[Share]) {
         "strongest",
         shares.iter().filter_map(|share| share.strongest),
     );
-    println!();
+    let confirmed = shares.iter().filter(|share| share.is_confirmed).count();
+    println!("; {confirmed} proved twice");
 }
 
 fn print_range(kind: &str, shares: impl Iterator<Item = f64>) {

@@ -56,6 +56,7 @@ fn assert_strongest_bounds_hold(spec: &ScenarioSpec, plan: &Plan) {
     let scenario = scenario_of(spec);
     let strongest = on_threads(2, |run| strongest_bounds(&scenario, &names, run));
     for (leg, bound) in plan.legs.iter().zip(strongest.legs) {
+        let bound = bound.map(|bound| bound.bound_s);
         assert!(bound >= leg.certified_lower_bound_s, "{bound:?} of {leg:?}");
         let bound = bound.unwrap_or(0.0);
         assert!(
@@ -63,7 +64,7 @@ fn assert_strongest_bounds_hold(spec: &ScenarioSpec, plan: &Plan) {
             "{bound} of {leg:?}"
         );
     }
-    let tour = strongest.tour_s.unwrap_or(0.0);
+    let tour = strongest.tour.map_or(0.0, |tour| tour.bound_s);
     assert!(tour <= plan.total_time_s, "{tour} of {}", plan.total_time_s);
 }
 

@@ -1,4 +1,4 @@
-//! Motions within a box of body rates, generated independently of the kinematic bound.
+//! Motions within a box of body rates, generated independently of the kinematic bound, and other sets of rates.
 
 use crate::random::Generator;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -129,4 +129,42 @@ fn extremal(rates: Vector3<f64>, mut costate: Vector3<f64>, total: f64) -> Const
         signs[flipped] = -signs[flipped];
     }
     arcs
+}
+
+/// Half-spaces `|f . w| <= 1` of some kind: of arrays of wheels, of weighted norms, or in any directions.
+#[must_use]
+pub fn half_spaces(number: u64, random: &mut Generator) -> Vec<Vector3<f64>> {
+    let direction = |random: &mut Generator| Vector3::from(random.direction());
+    let logarithmic =
+        |random: &mut Generator| Vector3::from([(); 3].map(|()| random.logarithmic(0.2, 1.0)));
+    match number % 3 {
+        0 => {
+            let wheels: Vec<_> = (0..3 + number % 4).map(|_| direction(random)).collect();
+            let pairs = (0..wheels.len()).flat_map(|i| (0..i).map(move |j| [i, j]));
+            pairs
+                .filter_map(|[i, j]| wheels[i].cross(&wheels[j]).try_normalize(0.1))
+                .map(|f| f / wheels.iter().map(|wheel| wheel.dot(&f).abs()).sum::<f64>())
+                .collect()
+        }
+        1 => {
+            let weight = random.between(0.1, 0.8);
+            let rates = logarithmic(random);
+            let mixed = [0, 1].into_iter().flat_map(|axis| {
+                [1.0, -1.0].map(|sign| {
+                    Vector3::ith(axis, (1.0 - weight) / rates[axis])
+                        + Vector3::z() * (sign * weight / rates.z)
+                })
+            });
+            mixed.chain([Vector3::z() / rates.z]).collect()
+        }
+        _ => {
+            let others = 3 + number % 6;
+            let any: Vec<_> = (0..others)
+                .map(|_| direction(random) * random.between(0.7, 1.3))
+                .collect();
+            let rates = logarithmic(random);
+            let axes = (0..3).map(|i| Vector3::ith(i, 1.0 / rates[i]));
+            axes.chain(any).collect()
+        }
+    }
 }

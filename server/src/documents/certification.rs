@@ -2,7 +2,9 @@
 
 use super::number::Number;
 use serde::Serialize;
-use slewplan_solver::tour::planner::{CheckedCertificate, PlanCertificate, Verdict};
+use slewplan_solver::tour::planner::{
+    CheckedCertificate, PlanCertificate, StrongestBound, Verdict,
+};
 
 /// What became of the claims of a plan.
 #[derive(Debug, Serialize)]
@@ -25,8 +27,10 @@ struct LegDocument<'a> {
 #[derive(Debug, Serialize)]
 struct ClaimDocument {
     certified_lower_bound_s: Option<Number>,
-    /// The largest lower bound that is known to hold, s; proved once where it exceeds the claim.
+    /// The largest lower bound that is known to hold, s.
     strongest_lower_bound_s: Option<Number>,
+    /// Whether that is proved a second time too.
+    strongest_confirmed: Option<bool>,
     verdict: &'static str,
     reason: Option<String>,
 }
@@ -45,16 +49,17 @@ impl<'a> CertificationDocument<'a> {
                     claim: ClaimDocument::new(leg.lower_bound_s, *strongest, verdict),
                 })
                 .collect(),
-            tour: ClaimDocument::new(claims.lower_bound_s, strongest.tour_s, &checked.tour),
+            tour: ClaimDocument::new(claims.lower_bound_s, strongest.tour, &checked.tour),
         }
     }
 }
 
 impl ClaimDocument {
-    fn new(bound: Option<f64>, strongest: Option<f64>, verdict: &Verdict) -> Self {
+    fn new(bound: Option<f64>, strongest: Option<StrongestBound>, verdict: &Verdict) -> Self {
         Self {
             certified_lower_bound_s: bound.map(Number),
-            strongest_lower_bound_s: strongest.map(Number),
+            strongest_lower_bound_s: strongest.map(|strongest| Number(strongest.bound_s)),
+            strongest_confirmed: strongest.map(|strongest| strongest.is_confirmed),
             verdict: name(verdict),
             reason: reason(verdict),
         }

@@ -64,6 +64,7 @@ use crate::model::tolerances::{ATTITUDE_TOLERANCE, LIMIT_TOLERANCE, RATE_TOLERAN
 use crate::model::waypoint::Waypoint;
 use momentum::{HeldSlew, MomentumBounds};
 use nalgebra::{Matrix3, Vector3};
+pub(crate) use norms::NormBound;
 use norms::Norms;
 use rolls::{given_away, least_over_rolls};
 use std::collections::HashMap;
@@ -247,10 +248,10 @@ impl CertifiedBounds {
         Some((frames[strongest.alternative].axes, certificate))
     }
 
-    /// The largest bound, s, that norms prove on slews between two waypoints, if it exceeds the one that
+    /// The largest bound that norms prove on slews between two waypoints, if it exceeds the one that
     /// [`Self::leg`] gives. Takes milliseconds. `None` with a free roll too, for which there are no such bounds,
     /// and mostly with momentum, for which there is that of a limit of the rate's norm alone.
-    pub(crate) fn beyond(&self, from: &Waypoint, to: &Waypoint, known_s: f64) -> Option<f64> {
+    pub(crate) fn beyond(&self, from: &Waypoint, to: &Waypoint, known_s: f64) -> Option<NormBound> {
         if from.roll.is_some() || to.roll.is_some() {
             return None;
         }

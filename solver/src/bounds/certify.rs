@@ -62,6 +62,7 @@ mod dwelling;
 mod interval;
 mod link;
 mod near_axis;
+mod polytope;
 mod prover;
 mod rates;
 mod sequence;
@@ -71,8 +72,11 @@ mod tests;
 mod turn;
 
 use crate::bounds::kinematic::certificate::{Certificate, CertifiedTurn};
+use crate::bounds::polytope::certificate::{FramePremise, NormCertificate};
+use crate::bounds::polytope::trapezoid::Trapezoid;
 use interval::Interval;
 use nalgebra::Vector3;
+use polytope::PolytopeProver;
 use prover::Prover;
 
 /// Why a bound was not confirmed.
@@ -166,6 +170,57 @@ pub fn verify(certificate: &Certificate) -> Result<(), Rejection> {
             .map_err(|rejection| rejection.of_turn(place))?;
     }
     Ok(())
+}
+
+/// Verifies the certificate of a bound by a norm.
+///
+/// # Errors
+///
+/// The first [`Rejection`]; the link is checked before the turn.
+pub fn verify_norm(certificate: &NormCertificate) -> Result<(), Rejection> {
+    let NormCertificate {
+        facets,
+        frame,
+        turn,
+        attitude_tolerance_rad,
+        duration_s,
+    } = certificate;
+    let malformed = |what| Err(Rejection::Malformed { what });
+    let positive = |v: &Vector3<f64>| v.iter().all(|x| x.is_finite() && *x > 0.0);
+    let limited = |limits: &Trapezoid| {
+        let steep = [limits.most, limits.slope];
+        steep.iter().all(|x| x.is_finite() && *x > 0.0) && limits.ends.iter().all(|x| *x >= 0.0)
+    };
+    let framed = |frame: &FramePremise| {
+        let FramePremise { axes, limits, ends } = frame;
+        let ends = ends.begin_rad_s.iter().chain(&ends.end_rad_s);
+        axes.iter().all(|x| x.is_finite())
+            && positive(&limits.rates_rad_s)
+            && positive(&limits.accelerations_rad_s2)
+            && ends.copied().all(|x| x >= 0.0)
+    };
+    if !facets.iter().all(|facet| limited(&facet.share)) || !frame.iter().all(framed) {
+        return malformed("limits must be positive and finite, end rates not negative");
+    }
+    if !turn.least_s.is_finite() || !duration_s.is_finite() {
+        return malformed("times must be finite");
+    }
+    if !(attitude_tolerance_rad.is_finite() && *attitude_tolerance_rad >= 0.0) {
+        return malformed("the angle of missed attitudes must be finite and not negative");
+    }
+    let normals: Vec<_> = facets.iter().map(|facet| facet.normal).collect();
+    let Some(prover) = PolytopeProver::new(&normals) else {
+        return malformed("the facets must enclose a polytope in general position");
+    };
+    if *duration_s > 0.0 {
+        let missed_s = link::missed_across(facets, *attitude_tolerance_rad);
+        let least_s = (Interval::exactly(turn.least_s) - missed_s).low;
+        let needed_s = link::at_most_across(facets, frame.as_ref(), *duration_s);
+        if needed_s > least_s {
+            return Err(Rejection::Link { least_s, needed_s });
+        }
+    }
+    prover.prove(&turn.turn, turn.least_s)
 }
 
 /// Verifies that no motion with `|w_i| <= box_i`, rad/s, makes a turn in less than its certified

@@ -53,6 +53,7 @@
 //! Hamilton-Jacobi theory. The enumeration is derived here. Boxes are a special case: the tests compare.
 
 mod cells;
+pub mod certificate;
 mod dwells;
 mod faces;
 mod flow;
@@ -61,6 +62,7 @@ mod pairs;
 mod search;
 #[cfg(test)]
 mod tests;
+pub mod trapezoid;
 
 use crate::model::attitude::Attitude;
 use faces::Faces;

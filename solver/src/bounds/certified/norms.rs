@@ -34,15 +34,15 @@
 //!   `T >= V_K + sum_i b_i tau_i + (1 - B) min tau_i` with `tau_i = p_i / a_i`.
 //! * Where the norm of the rate is limited, the ball of that norm (`rate_norm`), with momentum too.
 
-mod facet_limits;
 mod norm;
 mod rate_norm;
 
 use super::{BodyFrame, EXCEEDED_LIMITS};
 use crate::bounds::kinematic::ramps::stated;
+use crate::bounds::polytope::certificate::NormCertificate;
+use crate::bounds::polytope::trapezoid::Trapezoid;
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::{Dynamics, component};
-use facet_limits::Trapezoid;
 use nalgebra::{Matrix3, Vector3};
 use norm::Norm;
 
@@ -73,6 +73,15 @@ const MAX_TRIED: usize = 12;
 const SMALL_GAIN: f64 = 5e-4;
 /// Facets beyond those of a box.
 const FACETS_OF_A_BOX: usize = 3;
+
+/// A bound by a norm.
+#[derive(Debug)]
+pub(crate) struct NormBound {
+    /// The bound, s.
+    pub(crate) bound_s: f64,
+    /// Its certificate; `None` where it follows from a limit of the Euclidean norm of the rate.
+    pub(crate) certificate: Option<NormCertificate>,
+}
 
 /// The norms for a spacecraft without momentum and some rates at the ends of a slew.
 #[derive(Debug)]
@@ -127,15 +136,15 @@ impl Norms {
         Self { norms, rate_norm }
     }
 
-    /// The largest bound, s, that some norm proves for a turn whose ends are missed by an angle, rad, each, if it
-    /// exceeds one that is known, s.
+    /// The largest bound that some norm proves for a turn whose ends are missed by an angle, rad, each, if it exceeds
+    /// one that is known, s.
     pub(super) fn beyond(
         &self,
         turn: &Attitude,
         missed: f64,
         known_s: f64,
         tolerance: f64,
-    ) -> Option<f64> {
+    ) -> Option<NormBound> {
         let identity = Attitude::identity();
         let vector = identity.signed_turn_to(&turn.nearest_sign(&identity));
         let mut promising: Vec<(f64, &Norm)> = self
@@ -148,13 +157,18 @@ impl Norms {
         let by_norm = self.rate_norm.map_or(0.0, |limits| {
             rate_norm::least_duration(vector.norm() - 2.0 * missed, &limits)
         });
-        let mut best = known_s.max(by_norm);
+        let (mut best, mut of) = (known_s.max(by_norm), None);
         for (_, norm) in promising.into_iter().take(MAX_TRIED) {
-            best = norm.raised(turn, missed, best, tolerance);
+            let raised = norm.raised(turn, missed, best, tolerance);
+            if raised > best {
+                (best, of) = (raised, Some(norm));
+            }
         }
-        (best > known_s)
-            .then(|| stated(best))
-            .filter(|bound| *bound > known_s)
+        let bound_s = stated(best);
+        (bound_s > known_s).then(|| NormBound {
+            bound_s,
+            certificate: of.map(|norm| norm.certificate(turn, missed, bound_s, tolerance)),
+        })
     }
 }
 

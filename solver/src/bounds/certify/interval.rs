@@ -67,6 +67,20 @@ impl Interval {
         self.high.max(-self.low)
     }
 
+    /// The smaller one of two numbers.
+    pub(super) fn least(self, other: Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.min(other.high),
+        }
+    }
+
+    /// The numbers that are in both intervals; `None` where there are none.
+    pub(super) fn common(self, other: Self) -> Option<Self> {
+        let (low, high) = (self.low.max(other.low), self.high.min(other.high));
+        (low <= high).then_some(Self { low, high })
+    }
+
     /// `|x|`.
     pub(super) fn abs(self) -> Self {
         Self {

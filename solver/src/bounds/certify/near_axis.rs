@@ -23,7 +23,8 @@
 
 use super::interval::Interval;
 use super::rates::Rates;
-use super::turn::{QuatInterval, swing, twist};
+use super::turn::{QuatInterval, least_turn, of_numbers, swing, twist};
+use nalgebra::Vector3;
 
 /// Swing and twist of a target about one axis.
 #[derive(Debug, Clone, Copy)]
@@ -37,9 +38,10 @@ pub(super) struct NearAxis {
 
 impl NearAxis {
     pub(super) fn new(q: &QuatInterval, axis: usize) -> Self {
-        let twist = twist(q, axis);
+        let along = of_numbers(&Vector3::ith(axis, 1.0));
+        let twist = twist(q, &along);
         Self {
-            swing: swing(q, axis).low,
+            swing: swing(q, &along).low,
             twists: [least_turn(twist), least_turn(-twist)],
             axis,
         }
@@ -80,15 +82,4 @@ impl NearAxis {
         fastest_back <= 0.0
             || (Interval::exactly(back) / Interval::exactly(fastest_back)).low >= time
     }
-}
-
-/// The least angle in `[0, 2 pi)` that equals an angle of the interval modulo a full turn, rounded
-/// down.
-fn least_turn(angle: Interval) -> f64 {
-    let full = Interval::PI.twice();
-    let turns = (angle.low / full.low).floor();
-    let low = (Interval::exactly(angle.low) - full * Interval::exactly(turns)).low;
-    let high = (Interval::exactly(angle.high) - full * Interval::exactly(turns)).high;
-    // An angle just below a full turn may be zero within its error.
-    if high >= full.low { 0.0 } else { low.max(0.0) }
 }

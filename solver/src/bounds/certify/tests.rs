@@ -1,5 +1,6 @@
 mod certificates;
 mod enclosures;
+mod polytopes;
 mod sequences;
 
 use super::*;

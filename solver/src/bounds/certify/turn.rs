@@ -1,6 +1,7 @@
 //! Turns as quaternions of intervals, scalar last.
 
 use super::interval::Interval;
+use nalgebra::Vector3;
 
 /// A quaternion of intervals, scalar last.
 pub(super) type QuatInterval = [Interval; 4];
@@ -60,6 +61,30 @@ pub(super) fn dot(a: &VectorInterval, b: &VectorInterval) -> Interval {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// A vector of ordinary numbers.
+pub(super) fn of_numbers(v: &Vector3<f64>) -> VectorInterval {
+    [v.x, v.y, v.z].map(Interval::exactly)
+}
+
+/// Difference of two vectors.
+pub(super) fn minus(a: &VectorInterval, b: &VectorInterval) -> VectorInterval {
+    [0, 1, 2].map(|i| a[i] - b[i])
+}
+
+/// Vector product.
+pub(super) fn cross(a: &VectorInterval, b: &VectorInterval) -> VectorInterval {
+    [0, 1, 2].map(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        a[j] * b[k] - a[k] * b[j]
+    })
+}
+
+/// The vector of length one in a direction; `None` where the vector may be zero.
+pub(super) fn unit(v: &VectorInterval) -> Option<VectorInterval> {
+    let length = v[0].length(v[1]).length(v[2]);
+    (length.low > 0.0).then(|| v.map(|x| x / length))
+}
+
 /// The turn about a vector of unit length by an angle.
 pub(super) fn about(axis: &VectorInterval, angle: Interval) -> QuatInterval {
     let (sin, cos) = angle.half().sin_cos();
@@ -83,13 +108,25 @@ pub(super) fn angle_of(q: &QuatInterval) -> Interval {
     }
 }
 
-/// Swing of a turn away from a body axis, in `[0, pi]`.
-pub(super) fn swing(q: &QuatInterval, axis: usize) -> Interval {
-    let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
-    Interval::angle(q[j].length(q[k]), q[axis].length(q[3])).twice()
+/// Swing of a turn away from a body axis of length one, in `[0, pi]`.
+pub(super) fn swing(q: &QuatInterval, axis: &VectorInterval) -> Interval {
+    let vector = [q[0], q[1], q[2]];
+    let [x, y, z] = cross(&vector, axis);
+    Interval::angle(x.length(y).length(z), dot(&vector, axis).length(q[3])).twice()
 }
 
-/// Twist of a turn about a body axis, modulo a full turn.
-pub(super) fn twist(q: &QuatInterval, axis: usize) -> Interval {
-    Interval::angle(q[axis], q[3]).twice()
+/// Twist of a turn about a body axis of length one, modulo a full turn.
+pub(super) fn twist(q: &QuatInterval, axis: &VectorInterval) -> Interval {
+    Interval::angle(dot(&[q[0], q[1], q[2]], axis), q[3]).twice()
+}
+
+/// The least angle in `[0, 2 pi)` that equals an angle of the interval modulo a full turn, rounded
+/// down.
+pub(super) fn least_turn(angle: Interval) -> f64 {
+    let full = Interval::PI.twice();
+    let turns = (angle.low / full.low).floor();
+    let low = (Interval::exactly(angle.low) - full * Interval::exactly(turns)).low;
+    let high = (Interval::exactly(angle.high) - full * Interval::exactly(turns)).high;
+    // An angle just below a full turn may be zero within its error.
+    if high >= full.low { 0.0 } else { low.max(0.0) }
 }

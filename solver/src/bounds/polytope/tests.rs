@@ -5,6 +5,7 @@ mod motions;
 use super::*;
 use crate::bounds::kinematic::RateBox;
 use motions::{extremal, vertices};
+use slewplan_tests::motions::half_spaces;
 use slewplan_tests::random::Generator;
 use std::f64::consts::PI;
 
@@ -26,39 +27,6 @@ fn rates(random: &mut Generator) -> Vector3<f64> {
 fn turn(random: &mut Generator) -> Attitude {
     let angle = random.logarithmic(3e-2, PI);
     Attitude::from_rotation_vector(Vector3::from(random.direction()) * angle)
-}
-
-/// Half-spaces of some kind: of arrays of wheels, of weighted norms, or in any directions.
-fn half_spaces(number: u64, random: &mut Generator) -> Vec<Vector3<f64>> {
-    let direction = |random: &mut Generator| Vector3::from(random.direction());
-    match number % 3 {
-        0 => {
-            let wheels: Vec<_> = (0..3 + number % 4).map(|_| direction(random)).collect();
-            let pairs = (0..wheels.len()).flat_map(|i| (0..i).map(move |j| [i, j]));
-            pairs
-                .filter_map(|[i, j]| wheels[i].cross(&wheels[j]).try_normalize(0.1))
-                .map(|f| f / wheels.iter().map(|wheel| wheel.dot(&f).abs()).sum::<f64>())
-                .collect()
-        }
-        1 => {
-            let weight = random.between(0.1, 0.8);
-            let rates = rates(random);
-            let mixed = [0, 1].into_iter().flat_map(|axis| {
-                [1.0, -1.0].map(|sign| {
-                    Vector3::ith(axis, (1.0 - weight) / rates[axis])
-                        + Vector3::z() * (sign * weight / rates.z)
-                })
-            });
-            mixed.chain([Vector3::z() / rates.z]).collect()
-        }
-        _ => {
-            let others = 3 + number % 6;
-            let any: Vec<_> = (0..others)
-                .map(|_| direction(random) * random.between(0.7, 1.3))
-                .collect();
-            axis_limits(&rates(random)).into_iter().chain(any).collect()
-        }
-    }
 }
 
 #[test]

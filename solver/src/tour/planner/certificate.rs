@@ -14,6 +14,7 @@
 //! arithmetic and is not verified.
 
 mod premises;
+pub(super) mod proofs;
 
 use super::Run;
 use super::additive_tours::LegTimes;
@@ -25,10 +26,11 @@ use super::strongest::{StrongestBounds, strongest_between};
 use super::tables::CertifiedLeg;
 use super::tour_bound::tour_bound;
 use super::{named_pairs, tour_pairs};
-use crate::bounds::certify::{self, Rejection};
+use crate::bounds::certify::Rejection;
 use crate::model::scenario::Scenario;
 use crate::run::progress::{Progress, Stage};
 use crate::tour::order::Place;
+use proofs::prove_by_box;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The certified bounds of a plan.
@@ -131,8 +133,7 @@ pub struct CheckedCertificate {
     pub legs: Vec<Verdict>,
     /// On the bound on all tours.
     pub tour: Verdict,
-    /// The largest bounds that are known to hold for the same legs and for all tours, those that are
-    /// proved once only included.
+    /// The largest bounds that are known to hold for the same legs and for all tours.
     pub strongest: StrongestBounds,
 }
 
@@ -209,7 +210,12 @@ impl CertificateVerifier<'_> {
         if has_free_roll(self.places.scenario, pair) {
             return Verdict::NotChecked(Obstacle::FreeRoll);
         }
-        match self.prove_leg(pair, &canonical(self.places, pair), Some(bound)) {
+        match prove_by_box(
+            self.places,
+            pair,
+            &canonical(self.places, pair),
+            Some(bound),
+        ) {
             Ok(_) => Verdict::Confirmed,
             Err(objection) => Verdict::Rejected(objection),
         }
@@ -260,7 +266,7 @@ impl CertificateVerifier<'_> {
         let begin = |missing: usize| _ = self.total.fetch_add(missing as u64, Ordering::Relaxed);
         let bound = |index: usize, leg: &CanonicalLeg| {
             let proved = (!self.run.stop.is_set()).then(|| CertifiedLeg {
-                lower_bound: self.prove_leg(pairs[index], leg, None).ok(),
+                lower_bound: prove_by_box(self.places, pairs[index], leg, None).ok(),
                 solve_time: 0.0,
             });
             self.report_progress();
@@ -283,27 +289,6 @@ impl CertificateVerifier<'_> {
         stopped.then_some(Verdict::NotChecked(Obstacle::Stopped))
     }
 
-    /// Proves a bound on the leg between two places, s: the given one, or the one that the solver
-    /// computes. Returns the proved bound.
-    fn prove_leg(
-        &self,
-        (from, to): (Place, Place),
-        leg: &CanonicalLeg,
-        bound: Option<f64>,
-    ) -> Result<f64, Objection> {
-        let certificate = self.places.certified.certificate(&leg.from, &leg.to);
-        let (axes, mut certificate) = certificate.ok_or(Objection::UnlimitedRates)?;
-        let ends = if leg.mirrored { [to, from] } else { [from, to] };
-        premises::check(self.places.scenario, ends, &axes, &certificate)
-            .map_err(|what| Objection::Premises { what })?;
-        let known_s = certificate.duration_s;
-        certificate.duration_s = bound.unwrap_or(known_s);
-        match certify::verify(&certificate) {
-            Ok(()) => Ok(certificate.duration_s),
-            Err(rejection) => Err(Objection::NotProved { known_s, rejection }),
-        }
-    }
-
     fn report_progress(&self) {
         self.run.observer.progress(Progress {
             stage: Stage::Legs,
@@ -318,7 +303,7 @@ impl CertificateVerifier<'_> {
 }
 
 /// Whether the roll is free at one of two places.
-fn has_free_roll(scenario: &Scenario, (from, to): (Place, Place)) -> bool {
+pub(super) fn has_free_roll(scenario: &Scenario, (from, to): (Place, Place)) -> bool {
     [from, to].into_iter().any(|place| match place {
         Place::Start => false,
         Place::Target(index) => scenario.targets()[index].roll.is_some(),

@@ -1,9 +1,13 @@
 //! One norm: its polytope, and how much of it a slew can cover in a time.
 
-use super::facet_limits::Trapezoid;
 use crate::bounds::kinematic::bisection::last_where;
+use crate::bounds::kinematic::certificate::CertifiedTurn;
 use crate::bounds::kinematic::rate_envelope::RateEnvelope;
 use crate::bounds::polytope::RatePolytope;
+use crate::bounds::polytope::certificate::{
+    FacetPremise, FramePremise, NormCertificate, PROOF_MARGIN,
+};
+use crate::bounds::polytope::trapezoid::Trapezoid;
 use crate::model::attitude::Attitude;
 use nalgebra::{Matrix3, Vector3};
 
@@ -16,13 +20,13 @@ pub(super) struct Norm {
     polytope: RatePolytope,
     /// For each pair of facets, the limits of its component relative to its distance.
     facets: Vec<FacetLimits>,
-    /// The limits along the axes of a frame.
-    boxed: Option<RateEnvelope>,
+    /// A frame with the limits along its axes.
+    boxed: Option<(Matrix3<f64>, RateEnvelope)>,
 }
 
 #[derive(Debug)]
 struct FacetLimits {
-    own: Trapezoid,
+    premise: FacetPremise,
     /// Absolute components along the axes of the frame, relative to its distance.
     shares: Vector3<f64>,
 }
@@ -36,12 +40,15 @@ impl Norm {
     ) -> Option<Self> {
         let polytope = RatePolytope::within(half_spaces)?;
         let facets = half_spaces.iter().map(|f| FacetLimits {
-            own: limits(f),
+            premise: FacetPremise {
+                normal: *f,
+                share: limits(f),
+            },
             shares: boxed.map_or_else(Vector3::zeros, |(axes, _)| axes.tr_mul(f).abs()),
         });
         Some(Self {
             facets: facets.collect(),
-            boxed: boxed.map(|(_, envelope)| envelope),
+            boxed,
             polytope,
         })
     }
@@ -57,12 +64,40 @@ impl Norm {
 
     /// The larger of a bound, s, and that of this norm on a turn whose ends are missed by an angle, rad, each.
     pub(super) fn raised(&self, turn: &Attitude, missed: f64, known_s: f64, tolerance: f64) -> f64 {
-        let least = self.polytope.least_time(turn, tolerance).lower_s;
-        let least = least - self.polytope.slowest_s(2.0 * missed);
+        let least = self.certifiable_time(turn, tolerance) - self.polytope.slowest_s(2.0 * missed);
         if least <= self.covered(known_s) {
             return known_s;
         }
         last_where(known_s, least, |duration| self.covered(duration) < least)
+    }
+
+    /// The certificate of a bound, s, that this norm gives.
+    pub(super) fn certificate(
+        &self,
+        turn: &Attitude,
+        missed: f64,
+        bound_s: f64,
+        tolerance: f64,
+    ) -> NormCertificate {
+        NormCertificate {
+            facets: self.facets.iter().map(|facet| facet.premise).collect(),
+            frame: self.boxed.map(|(axes, envelope)| FramePremise {
+                axes,
+                limits: envelope.limits,
+                ends: envelope.ends,
+            }),
+            turn: CertifiedTurn {
+                turn: *turn,
+                least_s: self.certifiable_time(turn, tolerance),
+            },
+            attitude_tolerance_rad: missed,
+            duration_s: bound_s,
+        }
+    }
+
+    /// The least time of a turn, s, with the margin that its verification needs.
+    fn certifiable_time(&self, turn: &Attitude, tolerance: f64) -> f64 {
+        self.polytope.least_time(turn, tolerance).lower_s * (1.0 - PROOF_MARGIN)
     }
 
     /// `s(T)`, from above.
@@ -71,9 +106,9 @@ impl Norm {
         times.extend(
             self.facets
                 .iter()
-                .flat_map(|facet| facet.own.kinks(duration)),
+                .flat_map(|facet| facet.premise.share.kinks(duration)),
         );
-        if let Some(boxed) = &self.boxed {
+        if let Some((_, boxed)) = &self.boxed {
             times.extend(boxed.kinks(duration));
         }
         times.sort_by(f64::total_cmp);
@@ -94,12 +129,12 @@ impl Norm {
     /// The same between two times without a kink between them. Each facet has one of its two limits, both linear
     /// there; the largest of linear functions is below the chord between its ends.
     fn covered_between(&self, times: [f64; 2], duration: f64) -> f64 {
-        let boxed = self.boxed.as_ref().map(|boxed| {
+        let boxed = self.boxed.as_ref().map(|(_, boxed)| {
             times.map(|time| Vector3::from_fn(|axis, _| boxed.available(axis, time, duration)))
         });
         let mut largest = [0.0_f64; 2];
         for facet in &self.facets {
-            let mut limits = times.map(|time| facet.own.at(time, duration));
+            let mut limits = times.map(|time| facet.premise.share.at(time, duration));
             if let Some(boxed) = &boxed {
                 let other = boxed.map(|rates| rates.dot(&facet.shares));
                 if other[0] + other[1] < limits[0] + limits[1] {

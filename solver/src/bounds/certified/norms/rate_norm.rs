@@ -4,8 +4,8 @@
 //! duration covers is `int min(limit, b + a t, e + a (T - t)) dt` with the largest norms of the acceleration and of
 //! the rates at both ends.
 
-use super::facet_limits::Trapezoid;
 use crate::bounds::kinematic::bisection::last_where;
+use crate::bounds::polytope::trapezoid::Trapezoid;
 
 /// The longest duration, s, in which a norm within such limits cannot cover an angle, rad.
 pub(super) fn least_duration(angle: f64, limits: &Trapezoid) -> f64 {

@@ -2,7 +2,7 @@
 
 use super::super::interval::{Interval, twice_asin_of_root};
 use super::super::link;
-use super::super::turn::{about, angle_of, product, rotate, swing, twist};
+use super::super::turn::{about, angle_of, of_numbers, product, rotate, swing, twist};
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
@@ -163,9 +163,10 @@ proptest! {
             // Swing is the angle by which the axis moves; twist and swing together give the turn.
             let axis = Vector3::ith(i, 1.0);
             let moved = both.to_reference(axis).dot(&axis);
-            prop_assert!((swing(&product, i).middle().cos() - moved).abs() < 1e-12);
-            let of_twist = (0.5 * twist(&product, i).middle()).cos();
-            let of_swing = (0.5 * swing(&product, i).middle()).cos();
+            let along = of_numbers(&axis);
+            prop_assert!((swing(&product, &along).middle().cos() - moved).abs() < 1e-12);
+            let of_twist = (0.5 * twist(&product, &along).middle()).cos();
+            let of_swing = (0.5 * swing(&product, &along).middle()).cos();
             prop_assert!((of_twist * of_swing - xyzw[3]).abs() < 1e-12);
         }
     }

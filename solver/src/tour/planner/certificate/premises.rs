@@ -6,7 +6,9 @@
 //! components from the corners of boxes, inertias by solving linear systems, turns as products of
 //! matrices. What the checker tolerates has to be within them too.
 
-use crate::bounds::kinematic::certificate::Certificate;
+use crate::bounds::kinematic::certificate::{Certificate, CertifiedTurn};
+use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
+use crate::bounds::polytope::certificate::{FacetPremise, FramePremise, NormCertificate};
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::tolerances::{ATTITUDE_TOLERANCE, LIMIT_TOLERANCE, RATE_TOLERANCE};
 use crate::tour::order::Place;
@@ -32,39 +34,191 @@ pub(super) fn check(
     axes: &Matrix3<f64>,
     certificate: &Certificate,
 ) -> Result<(), &'static str> {
-    if (axes.tr_mul(axes) - Matrix3::identity()).amax() > ORTHONORMAL || axes.determinant() < 0.0 {
-        return Err("axes that are not orthonormal");
-    }
+    let slews = Slews::of(scenario, places).ok_or(NO_INVERSE)?;
+    check_axes(axes)?;
     let [turn] = &certificate.turns[..] else {
         return Err("more or less than one turn");
     };
-    let [(from, begin), (to, end)] = places.map(|place| conditions(scenario, place));
-    let expected = axes.tr_mul(&(from.tr_mul(&to) * axes));
-    if (expected - turn.turn.matrix()).amax() > SAME_TURN {
-        return Err("another turn");
+    slews.check_turn(axes, turn, certificate.attitude_tolerance_rad)?;
+    slews.check_limits(axes, &certificate.limits, &certificate.ends)
+}
+
+/// Checks the premises of a certificate of a bound by a norm for slews between two places without momentum.
+///
+/// # Errors
+///
+/// The first premise that the scenario does not support.
+pub(super) fn check_norm(
+    scenario: &Scenario,
+    places: [Place; 2],
+    certificate: &NormCertificate,
+) -> Result<(), &'static str> {
+    let slews = Slews::of(scenario, places).ok_or(NO_INVERSE)?;
+    slews.check_turn(
+        &Matrix3::identity(),
+        &certificate.turn,
+        certificate.attitude_tolerance_rad,
+    )?;
+    for facet in &certificate.facets {
+        slews.check_facet(facet)?;
     }
-    if certificate.attitude_tolerance_rad < ATTITUDE_TOLERANCE {
-        return Err("attitudes that are met more exactly than they have to be");
-    }
-    let Some(reached) = reachable(scenario, axes) else {
-        return Err("an inertia that cannot be inverted");
+    let Some(FramePremise { axes, limits, ends }) = &certificate.frame else {
+        return Ok(());
     };
-    let [rates, accelerations] = reached.map(|most| most * (1.0 + LIMIT_TOLERANCE));
-    let within = |needed: Vector3<f64>, granted: &Vector3<f64>| {
-        (0..3).all(|axis| needed[axis] <= granted[axis] * (1.0 + ROUNDING))
-    };
-    if !within(rates, &certificate.limits.rates_rad_s) {
-        return Err("a limit of the rates below what the wheels can do");
+    check_axes(axes)?;
+    slews.check_limits(axes, limits, ends)
+}
+
+/// Why nothing can be said of a spacecraft.
+const NO_INVERSE: &str = "an inertia that cannot be inverted";
+
+/// All slews between two places.
+struct Slews<'a> {
+    scenario: &'a Scenario,
+    /// Body axes at the two ends in the reference frame, as columns.
+    attitudes: [Matrix3<f64>; 2],
+    /// Ranges of the rate components there, rad/s, with the tolerance.
+    ranges: [[(f64, f64); 3]; 2],
+    /// Inverses of the inertia of the spacecraft and of that without its wheels about their axes.
+    inverses: [Matrix3<f64>; 2],
+    /// Momentum of locked wheels, N m s.
+    locked: Vector3<f64>,
+}
+
+impl<'a> Slews<'a> {
+    fn of(scenario: &'a Scenario, places: [Place; 2]) -> Option<Self> {
+        let [begin, end] = places.map(|place| conditions(scenario, place));
+        let spacecraft = scenario.spacecraft();
+        let speeds = &scenario.start().wheel_speed;
+        let mut effective = *spacecraft.inertia();
+        let mut locked = Vector3::zeros();
+        for (wheel, speed) in spacecraft.wheels().iter().zip(speeds) {
+            if wheel.enabled {
+                effective -= wheel.axis * wheel.axis.transpose() * wheel.inertia;
+            } else {
+                locked += wheel.axis * (wheel.inertia * speed);
+            }
+        }
+        let inverse = |inertia: &Matrix3<f64>| inertia.lu().solve(&Matrix3::identity());
+        Some(Self {
+            scenario,
+            attitudes: [begin.0, end.0],
+            ranges: [begin.1, end.1],
+            inverses: [inverse(spacecraft.inertia())?, inverse(&effective)?],
+            locked,
+        })
     }
-    if !within(accelerations, &certificate.limits.accelerations_rad_s2) {
-        return Err("a limit of the accelerations below what the wheels can do");
+
+    /// Checks a turn that is expressed in some axes.
+    fn check_turn(
+        &self,
+        axes: &Matrix3<f64>,
+        turn: &CertifiedTurn,
+        attitude_tolerance_rad: f64,
+    ) -> Result<(), &'static str> {
+        let [from, to] = &self.attitudes;
+        let expected = axes.tr_mul(&(from.tr_mul(to) * axes));
+        if (expected - turn.turn.matrix()).amax() > SAME_TURN {
+            return Err("another turn");
+        }
+        if attitude_tolerance_rad < ATTITUDE_TOLERANCE {
+            return Err("attitudes that are met more exactly than they have to be");
+        }
+        Ok(())
     }
-    let largest = |ranges: &[(f64, f64); 3]| along_axes(axes, |axis| over_corners(axis, ranges));
-    if !within(largest(&begin), &certificate.ends.begin_rad_s) {
-        return Err("a rate at the beginning below what is admitted there");
+
+    fn check_limits(
+        &self,
+        axes: &Matrix3<f64>,
+        limits: &SlewLimits,
+        ends: &EndRates,
+    ) -> Result<(), &'static str> {
+        for (axis, direction) in axes.column_iter().enumerate() {
+            self.check_direction(
+                &direction.into_owned(),
+                limits.rates_rad_s[axis],
+                limits.accelerations_rad_s2[axis],
+                [ends.begin_rad_s[axis], ends.end_rad_s[axis]],
+            )?;
+        }
+        Ok(())
     }
-    if !within(largest(&end), &certificate.ends.end_rad_s) {
-        return Err("a rate at the end below what is admitted there");
+
+    fn check_facet(&self, facet: &FacetPremise) -> Result<(), &'static str> {
+        let FacetPremise { normal, share } = facet;
+        self.check_direction(normal, share.most, share.slope, share.ends)
+    }
+
+    /// Checks limits of the component along a direction, of any length.
+    fn check_direction(
+        &self,
+        direction: &Vector3<f64>,
+        rate: f64,
+        acceleration: f64,
+        ends: [f64; 2],
+    ) -> Result<(), &'static str> {
+        let within = |needed: f64, granted: f64| needed <= granted * (1.0 + ROUNDING);
+        let exceeded = 1.0 + LIMIT_TOLERANCE;
+        if !within(self.largest_rate(direction) * exceeded, rate) {
+            return Err("a limit of the rates below what the wheels can do");
+        }
+        if !within(
+            self.largest_acceleration(direction) * exceeded,
+            acceleration,
+        ) {
+            return Err("a limit of the accelerations below what the wheels can do");
+        }
+        let [begin, end] = self.ranges.map(|range| over_corners(direction, &range));
+        if !within(begin, ends[0]) {
+            return Err("a rate at the beginning below what is admitted there");
+        }
+        if !within(end, ends[1]) {
+            return Err("a rate at the end below what is admitted there");
+        }
+        Ok(())
+    }
+
+    /// Largest component along a direction of the rates that the wheels reach without total momentum,
+    /// `J w = -h_locked - sum a I W`.
+    fn largest_rate(&self, direction: &Vector3<f64>) -> f64 {
+        let (spacecraft, options) = (self.scenario.spacecraft(), self.scenario.options());
+        // The inertia is symmetric: d . J^-1 v = (J^-1 d) . v.
+        let lever = self.inverses[0] * direction;
+        let mut reached = lever.dot(&self.locked).abs();
+        for (_, wheel) in spacecraft.enabled_wheels() {
+            let share = (lever.dot(&wheel.axis) * wheel.inertia).abs();
+            if share > 0.0 {
+                reached += share * wheel.max_speed * options.momentum_authority;
+            }
+        }
+        let limits = spacecraft.max_rate().map(|limit| (-limit, limit));
+        let by_axis = over_corners(direction, &[limits.x, limits.y, limits.z]);
+        reached
+            .min(by_axis)
+            .min(spacecraft.max_rate_norm() * direction.norm())
+    }
+
+    /// Largest component along a direction of the accelerations that the wheels reach, either way,
+    /// `J_eff w' = -sum a u`.
+    fn largest_acceleration(&self, direction: &Vector3<f64>) -> f64 {
+        let (spacecraft, options) = (self.scenario.spacecraft(), self.scenario.options());
+        let push = self.inverses[1] * direction;
+        let either = [1.0, -1.0].map(|sign| -> f64 {
+            let wheels = spacecraft.enabled_wheels();
+            let largest = wheels.map(|(_, wheel)| {
+                let share = sign * push.dot(&wheel.axis) * options.torque_authority;
+                (share * wheel.max_torque).max(share * wheel.min_torque)
+            });
+            largest.sum()
+        });
+        either[0].max(either[1])
+    }
+}
+
+fn check_axes(axes: &Matrix3<f64>) -> Result<(), &'static str> {
+    let product = axes.tr_mul(axes) - Matrix3::identity();
+    if product.amax() > ORTHONORMAL || axes.determinant() < 0.0 {
+        return Err("axes that are not orthonormal");
     }
     Ok(())
 }
@@ -103,10 +257,6 @@ fn exact_conditions(scenario: &Scenario, place: Place) -> (Matrix3<f64>, [(f64, 
     }
 }
 
-fn along_axes(axes: &Matrix3<f64>, largest: impl Fn(&Vector3<f64>) -> f64) -> Vector3<f64> {
-    Vector3::from_fn(|axis, _| largest(&axes.column(axis).into_owned()))
-}
-
 /// Largest absolute component along a direction of the vectors in a box, over its corners.
 fn over_corners(direction: &Vector3<f64>, ranges: &[(f64, f64); 3]) -> f64 {
     let corners = (0..8_u8).map(|corner| {
@@ -130,53 +280,6 @@ fn over_corners(direction: &Vector3<f64>, ranges: &[(f64, f64); 3]) -> f64 {
             size.max(largest)
         }
     })
-}
-
-/// Largest components along axes of the rates and accelerations that the wheels reach within their
-/// limits without total momentum: `J w = -h_locked - sum a I W` and `J_eff w' = -sum a u`. `None`
-/// when an inertia cannot be inverted.
-fn reachable(scenario: &Scenario, axes: &Matrix3<f64>) -> Option<[Vector3<f64>; 2]> {
-    let (spacecraft, options) = (scenario.spacecraft(), scenario.options());
-    let speeds = &scenario.start().wheel_speed;
-    let mut effective = *spacecraft.inertia();
-    let mut locked = Vector3::zeros();
-    for (wheel, speed) in spacecraft.wheels().iter().zip(speeds) {
-        if wheel.enabled {
-            effective -= wheel.axis * wheel.axis.transpose() * wheel.inertia;
-        } else {
-            locked += wheel.axis * (wheel.inertia * speed);
-        }
-    }
-    // Both inertias are symmetric: d . J^-1 v = (J^-1 d) . v.
-    let levers = spacecraft.inertia().lu().solve(axes)?;
-    let pushes = effective.lu().solve(axes)?;
-    let limits = spacecraft.max_rate().map(|limit| (-limit, limit));
-    let limits = [limits.x, limits.y, limits.z];
-    let rates = Vector3::from_fn(|axis, _| {
-        let (lever, direction) = (levers.column(axis), axes.column(axis).into_owned());
-        let mut reached = lever.dot(&locked).abs();
-        for (_, wheel) in spacecraft.enabled_wheels() {
-            let share = (lever.dot(&wheel.axis) * wheel.inertia).abs();
-            if share > 0.0 {
-                reached += share * wheel.max_speed * options.momentum_authority;
-            }
-        }
-        let by_axis = over_corners(&direction, &limits);
-        reached.min(by_axis).min(spacecraft.max_rate_norm())
-    });
-    let accelerations = Vector3::from_fn(|axis, _| {
-        let push = pushes.column(axis);
-        let ends = |sign: f64| -> f64 {
-            let wheels = spacecraft.enabled_wheels();
-            let largest = wheels.map(|(_, wheel)| {
-                let share = sign * push.dot(&wheel.axis) * options.torque_authority;
-                (share * wheel.max_torque).max(share * wheel.min_torque)
-            });
-            largest.sum()
-        };
-        ends(1.0).max(ends(-1.0))
-    });
-    Some([rates, accelerations])
 }
 
 #[cfg(test)]

@@ -1,26 +1,27 @@
 //! Limits of one component of the rate over a slew.
 
-/// `min(most, begin + slope t, end + slope (T - t))`: what a component reaches between given ends.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Trapezoid {
-    /// Largest rate, rad/s.
-    pub(super) most: f64,
-    /// Largest acceleration, rad/s²; infinite where none is known.
-    pub(super) slope: f64,
-    /// Largest rates at the two ends, rad/s; infinite where the component is free.
-    pub(super) ends: [f64; 2],
+/// `min(most, begin + slope t, end + slope (T - t))`: what a component of the rate reaches between given ends, rad/s,
+/// or its share of a limit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trapezoid {
+    /// Its largest value.
+    pub most: f64,
+    /// Its largest rise in a second; infinite where none is known.
+    pub slope: f64,
+    /// Its largest values at the two ends; infinite where the component is free.
+    pub ends: [f64; 2],
 }
 
 impl Trapezoid {
     /// At a time of a slew of a duration.
-    pub(super) fn at(&self, time: f64, duration: f64) -> f64 {
+    pub(crate) fn at(&self, time: f64, duration: f64) -> f64 {
         let begin = self.ends[0] + self.slope * time;
         let end = self.ends[1] + self.slope * (duration - time);
         self.most.min(begin).min(end)
     }
 
     /// Times at which it may have a kink, within the duration.
-    pub(super) fn kinks(&self, duration: f64) -> [f64; 3] {
+    pub(crate) fn kinks(&self, duration: f64) -> [f64; 3] {
         let [begin, end] = self.ends.map(|end| end.min(self.most));
         [
             (self.most - begin) / self.slope,
@@ -31,7 +32,7 @@ impl Trapezoid {
     }
 
     /// Its mean over a duration; its largest value over an infinite one.
-    pub(super) fn mean(&self, duration: f64) -> f64 {
+    pub(crate) fn mean(&self, duration: f64) -> f64 {
         if duration.is_infinite() || self.slope.is_infinite() {
             return self.most;
         }

@@ -1,0 +1,64 @@
+//! Bounds on legs without momentum, proved in intervals by certificates made from the scenario.
+
+use super::{Objection, premises};
+use crate::bounds::certify;
+use crate::tour::order::Place;
+use crate::tour::planner::canonical::CanonicalLeg;
+use crate::tour::planner::places::Places;
+
+/// Proves a bound on the leg between two places by a box of rates, s: the given one, or the one that the solver
+/// computes. Returns the proved bound.
+pub(in super::super) fn prove_by_box(
+    places: &Places<'_>,
+    pair: (Place, Place),
+    leg: &CanonicalLeg,
+    bound: Option<f64>,
+) -> Result<f64, Objection> {
+    let certificate = places.certified.certificate(&leg.from, &leg.to);
+    let (axes, mut certificate) = certificate.ok_or(Objection::UnlimitedRates)?;
+    premises::check(places.scenario, ends(pair, leg), &axes, &certificate)
+        .map_err(|what| Objection::Premises { what })?;
+    let known_s = certificate.duration_s;
+    certificate.duration_s = bound.unwrap_or(known_s);
+    match certify::verify(&certificate) {
+        Ok(()) => Ok(certificate.duration_s),
+        Err(rejection) => Err(Objection::NotProved { known_s, rejection }),
+    }
+}
+
+/// What the solver proves of a leg by a norm beyond a bound that is known, s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in super::super) struct BeyondBox {
+    /// The bound, s.
+    pub(in super::super) bound_s: f64,
+    /// Whether intervals prove it too.
+    pub(in super::super) is_confirmed: bool,
+}
+
+/// The largest bound by a norm, if it exceeds one that is known, s; with its proof in intervals where it has a
+/// certificate. `None` too where this proof fails.
+pub(in super::super) fn prove_by_norm(
+    places: &Places<'_>,
+    pair: (Place, Place),
+    leg: &CanonicalLeg,
+    known_s: f64,
+) -> Option<BeyondBox> {
+    let beyond = places.certified.beyond(&leg.from, &leg.to, known_s)?;
+    let is_confirmed = match &beyond.certificate {
+        None => false,
+        Some(certificate) => {
+            premises::check_norm(places.scenario, ends(pair, leg), certificate).ok()?;
+            certify::verify_norm(certificate).ok()?;
+            true
+        }
+    };
+    Some(BeyondBox {
+        bound_s: beyond.bound_s,
+        is_confirmed,
+    })
+}
+
+/// The places at begin and end of a canonical leg.
+fn ends((from, to): (Place, Place), leg: &CanonicalLeg) -> [Place; 2] {
+    if leg.mirrored { [to, from] } else { [from, to] }
+}

@@ -1,6 +1,7 @@
 //! Each premise of a certificate, tightened beyond what the scenario supports.
 
 use super::*;
+use crate::bounds::certify;
 use crate::model::scenario::reference::experiment_a;
 use crate::tour::planner::places::Places;
 
@@ -62,6 +63,58 @@ fn tightened_premises_are_rejected() {
     }
     let message = check(&scenario, route, &(axes * 1.001), &good).expect_err("axes");
     assert!(message.contains("orthonormal"), "{message}");
+}
+
+/// A part of the expected objection, and a change of the certificate of a norm.
+type NormCase = (&'static str, fn(&mut NormCertificate));
+
+#[test]
+fn tightened_premises_of_norms_are_rejected() {
+    let scenario = Scenario::try_new(&experiment_a()).expect("valid").scenario;
+    let places = Places::of(&scenario);
+    let route = [Place::Target(0), Place::Target(1)];
+    let [from, to] = route.map(|place| places.waypoint(place));
+    let beyond = places.certified.beyond(&from, &to, 1.0).expect("a bound");
+    let good = beyond.certificate.expect("a certificate");
+    assert_eq!(check_norm(&scenario, route, &good), Ok(()));
+    assert_eq!(certify::verify_norm(&good), Ok(()));
+    let backwards = [route[1], route[0]];
+    check_norm(&scenario, backwards, &good).expect_err("another turn");
+    let cases: [NormCase; 7] = [
+        ("met more exactly", |c| c.attitude_tolerance_rad = 0.999e-6),
+        ("rates below", |c| c.facets[0].share.most *= 0.999),
+        ("accelerations below", |c| c.facets[1].share.slope *= 0.999),
+        ("at the beginning below", |c| {
+            c.facets[0].share.ends[0] = 0.0;
+        }),
+        ("at the end below", |c| c.facets[0].share.ends[1] = 0.0),
+        ("rates below", |c| {
+            let frame = c.frame.as_mut().expect("a frame");
+            frame.limits.rates_rad_s.y *= 0.999;
+        }),
+        ("orthonormal", |c| {
+            c.frame.as_mut().expect("a frame").axes *= 1.001;
+        }),
+    ];
+    for (expected, change) in cases {
+        let mut bad = good.clone();
+        change(&mut bad);
+        let message = check_norm(&scenario, route, &bad).expect_err(expected);
+        assert!(
+            message.contains(expected),
+            "{message} instead of {expected}"
+        );
+    }
+    let damages: [fn(&mut NormCertificate); 3] = [
+        |c| c.duration_s *= 1.001,
+        |c| c.turn.least_s *= 1.01,
+        |c| c.facets.truncate(2),
+    ];
+    for damage in damages {
+        let mut bad = good.clone();
+        damage(&mut bad);
+        certify::verify_norm(&bad).expect_err("a damaged certificate");
+    }
 }
 
 #[test]

@@ -32,6 +32,8 @@ const SOLVER: &[Row] = &[
         &[
             "bounds::kinematic::certificate",
             "bounds::kinematic::limits",
+            "bounds::polytope::certificate",
+            "bounds::polytope::trapezoid",
             "model::attitude",
         ],
     ),

@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 /// Relative reduction of least times in a certificate. It leaves the verification in interval arithmetic a margin for
 /// its own rounding, which is largest where an extremal rests, and for half-spaces and turns that it moves
 /// ([`crate::bounds::certify`]).
-pub(crate) const PROOF_MARGIN: f64 = 2e-5;
+pub(crate) const PROOF_MARGIN: f64 = 5e-5;
 
 /// A lower bound on the duration of a slew with its premises.
 ///

@@ -8,14 +8,12 @@
 
 use super::super::interval::Interval;
 use super::super::turn::{VectorInterval, cross, dot, minus, of_numbers, unit};
-use crate::math::random::SplitMix;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
+use std::f64::consts::SQRT_2;
 
 /// Half-spaces are moved outward by one to two of these shares.
 const SPREAD: f64 = 1e-7;
-/// Number of shares.
-const SHARES: usize = 1 << 32;
 /// Relative difference below which two half-spaces are one; only one of them is kept.
 const SAME: f64 = 1e-6;
 /// Largest number of half-spaces.
@@ -217,7 +215,6 @@ fn corner(points: &[Vector3<f64>], [i, j, k]: [usize; 3]) -> Result<Option<Corne
 /// Both half-spaces of every pair, moved outward; `None` if they are too many or not finite.
 fn spread(half_spaces: &[Vector3<f64>]) -> Option<Vec<Vector3<f64>>> {
     let mut points: Vec<Vector3<f64>> = Vec::new();
-    let mut shares = SplitMix::new(2);
     for f in half_spaces {
         if !f.iter().all(|x| x.is_finite()) || *f == Vector3::zeros() {
             return None;
@@ -226,7 +223,9 @@ fn spread(half_spaces: &[Vector3<f64>]) -> Option<Vec<Vector3<f64>>> {
         if points.iter().any(|known| near(known) || near(&-known)) {
             continue;
         }
-        let share = shares.below(SHARES) as f64 / SHARES as f64;
+        // Squares, so that no shares are in arithmetic progression.
+        let number = (points.len() / 2 + 1) as f64;
+        let share = (number * number * SQRT_2).fract();
         let moved = f / (1.0 + SPREAD * (1.0 + share));
         points.extend([moved, -moved]);
     }

@@ -11,7 +11,7 @@ use slewplan_tests::random::Generator;
 use std::f64::consts::PI;
 
 /// By how much a least time is reduced before it is proved.
-const MARGIN: f64 = 2e-5;
+const MARGIN: f64 = 5e-5;
 
 fn about(vector: Vector3<f64>) -> Attitude {
     Attitude::from_rotation_vector(vector)

@@ -40,7 +40,7 @@ pub(super) struct Ways<'a> {
     pub(super) steepness: Vec<Option<Interval>>,
     /// Number of arcs followed.
     pub(super) arcs: usize,
-    /// The fastest motion found that makes the turn: its time, and the turn that is missing then.
+    /// The way found that ends nearest to the turn: its time, and the turn that is missing then.
     pub(super) nearest: Option<(Interval, QuatInterval)>,
 }
 
@@ -99,7 +99,7 @@ impl Ways<'_> {
             return false;
         }
         let circles = &self.circles[way.vertex];
-        let Some(exits) = self.exits(way) else {
+        let Some((azimuth, exits)) = self.exits(way) else {
             return true;
         };
         // The arc ends at the latest at the first wall that is there for certain.
@@ -121,9 +121,7 @@ impl Ways<'_> {
             ..*way
         };
         if way.vertex == self.last.0 {
-            let ahead = self
-                .azimuth(way)
-                .and_then(|azimuth| within_half_a_turn(azimuth - self.last.1));
+            let ahead = within_half_a_turn(azimuth - self.last.1);
             if let Some(ahead) = ahead.filter(|ahead| ahead.low <= latest)
                 && !self.end_is_refuted(&along(ahead))
             {
@@ -147,8 +145,9 @@ impl Ways<'_> {
         true
     }
 
-    /// The walls of a circle; `None` where its vertex supports no costate of the level.
-    fn exits(&mut self, way: &Way) -> Option<Vec<Exit>> {
+    /// The azimuth of a way on its circle and the walls of that; `None` where its vertex supports no costate of the
+    /// level.
+    fn exits(&mut self, way: &Way) -> Option<(Interval, Vec<Exit>)> {
         let circles = &self.circles[way.vertex];
         let level = self.level;
         let steepness = *self.steepness[way.vertex].get_or_insert_with(|| circles.steepness(level));
@@ -177,20 +176,7 @@ impl Ways<'_> {
             };
             Exit { wall, gap, ahead }
         });
-        Some(exits.collect())
-    }
-
-    fn azimuth(&self, way: &Way) -> Option<Interval> {
-        match way.place {
-            Place::At(azimuth) => Some(azimuth),
-            Place::Beyond(entered) => {
-                let circles = &self.circles[way.vertex];
-                match circles.meeting(entered, self.steepness[way.vertex]?) {
-                    Meeting::Met(gap) => Some(circles.walls[entered].azimuth - gap.half_width),
-                    _ => None,
-                }
-            }
-        }
+        Some((from, exits.collect()))
     }
 
     /// Whether a way that is at the last costate does not make the turn in less than the time.

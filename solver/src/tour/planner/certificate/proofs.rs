@@ -5,6 +5,7 @@ use crate::bounds::certify;
 use crate::tour::order::Place;
 use crate::tour::planner::canonical::CanonicalLeg;
 use crate::tour::planner::places::Places;
+use crate::tour::planner::strongest::StrongestBound;
 
 /// Proves a bound on the leg between two places by a box of rates, s: the given one, or the one that the solver
 /// computes. Returns the proved bound.
@@ -26,15 +27,6 @@ pub(in super::super) fn prove_by_box(
     }
 }
 
-/// What the solver proves of a leg by a norm beyond a bound that is known, s.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(in super::super) struct BeyondBox {
-    /// The bound, s.
-    pub(in super::super) bound_s: f64,
-    /// Whether intervals prove it too.
-    pub(in super::super) is_confirmed: bool,
-}
-
 /// The largest bound by a norm, if it exceeds one that is known, s; with its proof in intervals where it has a
 /// certificate. `None` too where this proof fails.
 pub(in super::super) fn prove_by_norm(
@@ -42,7 +34,7 @@ pub(in super::super) fn prove_by_norm(
     pair: (Place, Place),
     leg: &CanonicalLeg,
     known_s: f64,
-) -> Option<BeyondBox> {
+) -> Option<StrongestBound> {
     let beyond = places.certified.beyond(&leg.from, &leg.to, known_s)?;
     let is_confirmed = match &beyond.certificate {
         None => false,
@@ -52,7 +44,7 @@ pub(in super::super) fn prove_by_norm(
             true
         }
     };
-    Some(BeyondBox {
+    Some(StrongestBound {
         bound_s: beyond.bound_s,
         is_confirmed,
     })

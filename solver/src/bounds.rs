@@ -2,7 +2,9 @@
 
 pub(crate) mod certified;
 pub mod certify;
+mod interval;
 pub mod kinematic;
 pub mod polytope;
+pub(crate) mod reach;
 
 pub use certified::VERSION;

@@ -30,6 +30,7 @@ const SOLVER: &[Row] = &[
     (
         "bounds/certify",
         &[
+            "bounds::interval",
             "bounds::kinematic::certificate",
             "bounds::kinematic::limits",
             "bounds::polytope::certificate",

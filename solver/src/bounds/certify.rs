@@ -59,7 +59,6 @@
 //! statement stronger; certificates leave a margin of 2e-6.
 
 mod dwelling;
-mod interval;
 mod link;
 mod near_axis;
 mod polytope;
@@ -71,10 +70,10 @@ mod terminal_arcs;
 mod tests;
 mod turn;
 
+use crate::bounds::interval::Interval;
 use crate::bounds::kinematic::certificate::{Certificate, CertifiedTurn};
 use crate::bounds::polytope::certificate::{FramePremise, NormCertificate};
 use crate::bounds::polytope::trapezoid::Trapezoid;
-use interval::Interval;
 use nalgebra::Vector3;
 use polytope::PolytopeProver;
 use prover::Prover;

@@ -14,10 +14,10 @@
 //! the same time, where `w_j` may have either sign. (A component whose rate exceeds that of `j`
 //! never reaches zero; component `j` itself touches zero only after a whole turn.)
 
-use super::interval::Interval;
 use super::rates::{Octant, Rates, flipped, octants};
 use super::sequence::{ArcSequence, InteriorArcs};
 use super::turn::{IDENTITY, QuatInterval, VectorInterval, about, product};
+use crate::bounds::interval::Interval;
 
 /// Relative saving from which a turn that replaces some fixed arcs shows that they are no part of a
 /// shortest motion. Any saving would do; the margin avoids ties.

@@ -10,8 +10,8 @@
 //! every axis, and no frame. The least times of the turns add up to at most `s(T)` for every motion of duration `T`.
 //! So `T` is a lower bound on the duration if `s(T)` is at most their sum.
 
-use super::interval::Interval;
 use super::turn::{dot, of_numbers};
+use crate::bounds::interval::Interval;
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use crate::bounds::polytope::certificate::{FacetPremise, FramePremise};
 use crate::bounds::polytope::trapezoid::Trapezoid;

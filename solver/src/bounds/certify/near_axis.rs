@@ -21,9 +21,9 @@
 //! Schwarz). The bounds fall with `D`, so they also hold for all sequences of more flips and, in
 //! the limit, for the turn about the axis alone.
 
-use super::interval::Interval;
 use super::rates::Rates;
 use super::turn::{QuatInterval, least_turn, of_numbers, swing, twist};
+use crate::bounds::interval::Interval;
 use nalgebra::Vector3;
 
 /// Swing and twist of a target about one axis.

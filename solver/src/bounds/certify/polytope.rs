@@ -17,11 +17,11 @@ mod near_minimum;
 mod ways;
 
 use super::Rejection;
-use super::interval::Interval;
 use super::turn::{
     QuatInterval, VectorInterval, about, angle_of, conjugate, cross, dot, least_turn, minus,
     of_numbers, product, rotate, unit,
 };
+use crate::bounds::interval::Interval;
 use crate::model::attitude::Attitude;
 use circles::Circles;
 use faces::Faces;

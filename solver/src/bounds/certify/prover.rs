@@ -2,12 +2,12 @@
 
 use super::Rejection;
 use super::dwelling;
-use super::interval::Interval;
 use super::near_axis::NearAxis;
 use super::rates::{Rates, flipped, octants};
 use super::sequence::{ArcSequence, InteriorArcs};
 use super::terminal_arcs::{Allowed, TargetView};
 use super::turn::{QuatInterval, about, angle_of, conjugate, product};
+use crate::bounds::interval::Interval;
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
 

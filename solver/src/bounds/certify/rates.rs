@@ -1,7 +1,7 @@
 //! The box of rates, scaled so that its corners have length one.
 
-use super::interval::Interval;
 use super::turn::{QuatInterval, VectorInterval, angle_of};
+use crate::bounds::interval::Interval;
 use nalgebra::Vector3;
 
 /// Relative difference by which each rate exceeds the next smaller one; closer rates are raised.

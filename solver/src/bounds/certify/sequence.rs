@@ -1,8 +1,8 @@
 //! Arc sequences: a first arc, an interior with one unknown duration, a last arc.
 
-use super::interval::Interval;
 use super::rates::{Octant, Rates, flipped};
 use super::turn::{IDENTITY, QuatInterval, product, scaled, sum, times_vector};
+use crate::bounds::interval::Interval;
 
 /// A turn and its derivative by a parameter, both as quaternions.
 #[derive(Debug, Clone, Copy)]

@@ -13,10 +13,10 @@
 //! so `C_1 (1 - cos(S - s)) + C_2 (1 - cos(U - u)) <= eta^2 / 8 - (1 - C_1 - C_2)` with the angles
 //! `s`, `u` of the two vectors, both shifted by half a turn for the other sign of `q`.
 
-use super::interval::{Interval, twice_asin_of_root};
 use super::rates::Rates;
 use super::sequence::{ArcSequence, Moving};
 use super::turn::{QuatInterval, VectorInterval, dot, dot4, product, rotate, times_vector};
+use crate::bounds::interval::{Interval, twice_asin_of_root};
 use std::f64::consts::PI;
 
 /// Distance from half a turn, rad, within which a half duration is replaced by zero.

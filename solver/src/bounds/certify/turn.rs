@@ -1,6 +1,6 @@
 //! Turns as quaternions of intervals, scalar last.
 
-use super::interval::Interval;
+use crate::bounds::interval::Interval;
 use nalgebra::Vector3;
 
 /// A quaternion of intervals, scalar last.

@@ -71,7 +71,7 @@ impl RateEnvelope {
     }
 
     /// `s(T)` for a box: the integrand is linear between kinks and crossings of the `m_i / p_i`.
-    pub(super) fn effective(&self, rates: &Vector3<f64>, duration: f64) -> f64 {
+    pub(crate) fn effective(&self, rates: &Vector3<f64>, duration: f64) -> f64 {
         let kinks = self.kinks(duration);
         let mut sum = 0.0;
         for pair in kinks.windows(2) {
@@ -100,7 +100,7 @@ impl RateEnvelope {
     }
 
     /// The duration `s^-1(least)`, from below and to rounding.
-    pub(super) fn duration_of(&self, rates: &Vector3<f64>, least: f64) -> f64 {
+    pub(crate) fn duration_of(&self, rates: &Vector3<f64>, least: f64) -> f64 {
         self.longest_short_of(rates, least, 0.0, 0.0)
     }
 

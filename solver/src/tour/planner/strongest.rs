@@ -7,7 +7,7 @@
 
 use super::bounds_by_form::BoundsByForm;
 use super::canonical::CanonicalLeg;
-use super::certificate::proofs::{prove_by_box, prove_by_norm};
+use super::certificate::proofs::{prove_by_box, prove_by_norm, prove_in_box};
 use super::certificate::{canonical, has_free_roll};
 use super::legs::certify;
 use super::places::Places;
@@ -123,8 +123,22 @@ fn strongest(
     }
     let confirmed_s = prove_by_box(places, pair, leg, None).ok();
     let known_s = confirmed_s.unwrap_or(once_s);
-    match prove_by_norm(places, pair, leg, known_s) {
-        Some(beyond) => (with(beyond.bound_s), beyond.is_confirmed),
-        None => (with(known_s), confirmed_s.is_some()),
+    let norm = prove_by_norm(places, pair, leg, known_s);
+    let (bound, certificate) = match &norm {
+        Some((bound, certificate)) => (*bound, certificate.as_ref()),
+        None => {
+            let is_confirmed = confirmed_s.is_some();
+            (
+                StrongestBound {
+                    bound_s: known_s,
+                    is_confirmed,
+                },
+                None,
+            )
+        }
+    };
+    match prove_in_box(places, pair, leg, bound.bound_s, certificate) {
+        Some(in_box_s) => (with(in_box_s), true),
+        None => (with(bound.bound_s), bound.is_confirmed),
     }
 }

@@ -11,9 +11,9 @@
 //!
 //! The edge is a *wall* of some half-width about its azimuth, or none.
 
-use super::super::interval::Interval;
 use super::super::turn::{VectorInterval, cross, dot, minus, of_numbers, unit};
 use super::faces::{Edge, Faces};
+use crate::bounds::interval::Interval;
 use nalgebra::Vector3;
 
 /// What limits the circles about a vertex on the side of an edge.

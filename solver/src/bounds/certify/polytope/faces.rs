@@ -6,8 +6,8 @@
 //! triangles of normals that span them are oriented alike, and so they cover all directions: every direction has its
 //! maximum at one of the vertices found, or none was missed.
 
-use super::super::interval::Interval;
 use super::super::turn::{VectorInterval, cross, dot, minus, of_numbers, unit};
+use crate::bounds::interval::Interval;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::f64::consts::SQRT_2;

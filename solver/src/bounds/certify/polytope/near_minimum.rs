@@ -7,9 +7,9 @@
 //! `n . w` and a drift of at most `tan(e) |w|` ([`super::super::near_axis`]), with `n . w <= a` within the polytope and
 //! `n . w >= h - 2 sin(e / 2) |w|` since `M . w = h`. The costate at rest at `n`, with a turn about it, is among these.
 
-use super::super::interval::Interval;
 use super::super::turn::{QuatInterval, VectorInterval, cross, dot, least_turn, swing, twist};
 use super::faces::Facet;
+use crate::bounds::interval::Interval;
 
 /// Angle, rad, far above the rounding of a cell of costates.
 const NEAR: f64 = 1e-9;

@@ -9,11 +9,11 @@
 //! An arc about a vertex by more than half a turn is no part of a shortest motion: the opposite vertex makes the same
 //! turn faster. So every arc is within `[0, pi]`.
 
-use super::super::interval::Interval;
 use super::super::turn::{
     IDENTITY, QuatInterval, VectorInterval, about, angle_of, conjugate, dot, least_turn, product,
 };
 use super::circles::{Circles, Gap, Meeting};
+use crate::bounds::interval::Interval;
 
 /// Number of arcs in a cell from which it is left open.
 const MAX_ARCS: usize = 1000;

@@ -1,8 +1,8 @@
 //! Enclosures by intervals, turns and the integral are valid and tight.
 
-use super::super::interval::{Interval, twice_asin_of_root};
 use super::super::link;
 use super::super::turn::{about, angle_of, of_numbers, product, rotate, swing, twist};
+use crate::bounds::interval::{Interval, twice_asin_of_root};
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;

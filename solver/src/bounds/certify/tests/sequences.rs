@@ -1,11 +1,11 @@
 //! Arc sequences: their interiors are products of arcs, and the terminal arcs that close them are
 //! found.
 
-use super::super::interval::Interval;
 use super::super::rates::{Octant, Rates, flipped};
 use super::super::sequence::ArcSequence;
 use super::super::terminal_arcs::{Allowed, TargetView};
 use super::super::turn::{QuatInterval, product};
+use crate::bounds::interval::Interval;
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
 use proptest::prelude::*;

@@ -1,7 +1,9 @@
-//! Bounds on legs without momentum, proved in intervals by certificates made from the scenario.
+//! Bounds on legs without momentum, proved with outward rounding by certificates made from the scenario.
 
 use super::{Objection, premises};
 use crate::bounds::certify;
+use crate::bounds::polytope::certificate::NormCertificate;
+use crate::bounds::reach::SlewsInBox;
 use crate::tour::order::Place;
 use crate::tour::planner::canonical::CanonicalLeg;
 use crate::tour::planner::places::Places;
@@ -34,7 +36,7 @@ pub(in super::super) fn prove_by_norm(
     pair: (Place, Place),
     leg: &CanonicalLeg,
     known_s: f64,
-) -> Option<StrongestBound> {
+) -> Option<(StrongestBound, Option<NormCertificate>)> {
     let beyond = places.certified.beyond(&leg.from, &leg.to, known_s)?;
     let is_confirmed = match &beyond.certificate {
         None => false,
@@ -44,10 +46,31 @@ pub(in super::super) fn prove_by_norm(
             true
         }
     };
-    Some(StrongestBound {
+    let bound = StrongestBound {
         bound_s: beyond.bound_s,
         is_confirmed,
-    })
+    };
+    Some((bound, beyond.certificate))
+}
+
+/// The largest bound by a box of rates that changes in time, if it exceeds one that is known, s. A norm whose
+/// certificate is confirmed makes the proof shorter.
+pub(in super::super) fn prove_in_box(
+    places: &Places<'_>,
+    pair: (Place, Place),
+    leg: &CanonicalLeg,
+    known_s: f64,
+    norm: Option<&NormCertificate>,
+) -> Option<f64> {
+    let (axes, certificate) = places.certified.certificate(&leg.from, &leg.to)?;
+    premises::check(places.scenario, ends(pair, leg), &axes, &certificate).ok()?;
+    certify::verify(&certificate).ok()?;
+    let slews = SlewsInBox::of(&certificate)?;
+    let slews = match norm {
+        Some(norm) => slews.knowing(&axes, norm),
+        None => slews,
+    };
+    slews.longest_excluded_s(known_s)
 }
 
 /// The places at begin and end of a canonical leg.

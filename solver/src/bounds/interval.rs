@@ -15,40 +15,40 @@ const LIBRARY: f64 = 2e-15;
 
 /// All numbers from `low` to `high`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Interval {
-    pub(super) low: f64,
-    pub(super) high: f64,
+pub(in crate::bounds) struct Interval {
+    pub(in crate::bounds) low: f64,
+    pub(in crate::bounds) high: f64,
 }
 
 impl Interval {
-    pub(super) const ZERO: Self = Self {
+    pub(in crate::bounds) const ZERO: Self = Self {
         low: 0.0,
         high: 0.0,
     };
-    pub(super) const ONE: Self = Self {
+    pub(in crate::bounds) const ONE: Self = Self {
         low: 1.0,
         high: 1.0,
     };
     /// `pi` lies between its nearest double, which is less, and the successor of that.
-    pub(super) const PI: Self = Self {
+    pub(in crate::bounds) const PI: Self = Self {
         low: PI,
         high: 3.141_592_653_589_793_6,
     };
 
     /// One number.
-    pub(super) fn exactly(x: f64) -> Self {
+    pub(in crate::bounds) fn exactly(x: f64) -> Self {
         Self { low: x, high: x }
     }
 
     /// All numbers within a distance of a number.
-    pub(super) fn around(x: f64, radius: f64) -> Self {
+    pub(in crate::bounds) fn around(x: f64, radius: f64) -> Self {
         Self {
             low: (x - radius).next_down(),
             high: (x + radius).next_up(),
         }
     }
 
-    pub(super) fn middle(self) -> f64 {
+    pub(in crate::bounds) fn middle(self) -> f64 {
         0.5 * (self.low + self.high)
     }
 
@@ -58,17 +58,17 @@ impl Interval {
         (self.high - middle).max(middle - self.low).next_up()
     }
 
-    pub(super) fn contains_zero(self) -> bool {
+    pub(in crate::bounds) fn contains_zero(self) -> bool {
         self.low <= 0.0 && self.high >= 0.0
     }
 
     /// The largest absolute value.
-    pub(super) fn size(self) -> f64 {
+    pub(in crate::bounds) fn size(self) -> f64 {
         self.high.max(-self.low)
     }
 
     /// The smaller one of two numbers.
-    pub(super) fn least(self, other: Self) -> Self {
+    pub(in crate::bounds) fn least(self, other: Self) -> Self {
         Self {
             low: self.low.min(other.low),
             high: self.high.min(other.high),
@@ -76,13 +76,13 @@ impl Interval {
     }
 
     /// The numbers that are in both intervals; `None` where there are none.
-    pub(super) fn common(self, other: Self) -> Option<Self> {
+    pub(in crate::bounds) fn common(self, other: Self) -> Option<Self> {
         let (low, high) = (self.low.max(other.low), self.high.min(other.high));
         (low <= high).then_some(Self { low, high })
     }
 
     /// `|x|`.
-    pub(super) fn abs(self) -> Self {
+    pub(in crate::bounds) fn abs(self) -> Self {
         Self {
             low: self.low.max(-self.high).max(0.0),
             high: self.size(),
@@ -90,7 +90,7 @@ impl Interval {
     }
 
     /// `x^2`.
-    pub(super) fn squared(self) -> Self {
+    pub(in crate::bounds) fn squared(self) -> Self {
         let size = self.abs();
         Self {
             low: (size.low * size.low).next_down().max(0.0),
@@ -99,7 +99,7 @@ impl Interval {
     }
 
     /// The square root of the part that is not negative.
-    pub(super) fn sqrt(self) -> Self {
+    pub(in crate::bounds) fn sqrt(self) -> Self {
         Self {
             low: self.low.max(0.0).sqrt().next_down().max(0.0),
             high: self.high.max(0.0).sqrt().next_up(),
@@ -107,12 +107,12 @@ impl Interval {
     }
 
     /// The length of a vector of two components.
-    pub(super) fn length(self, other: Self) -> Self {
+    pub(in crate::bounds) fn length(self, other: Self) -> Self {
         (self.squared() + other.squared()).sqrt()
     }
 
     /// Sine and cosine, whose derivatives are at most one.
-    pub(super) fn sin_cos(self) -> (Self, Self) {
+    pub(in crate::bounds) fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.middle().sin_cos();
         let radius = (self.radius() + LIBRARY).next_up();
         (Self::around(sin, radius), Self::around(cos, radius))
@@ -120,7 +120,7 @@ impl Interval {
 
     /// The angle of the vector `(x, y)`, around `atan2` of the middles; the whole circle, a radius
     /// of `pi`, when the vector may be zero. The result is not reduced to a range.
-    pub(super) fn angle(y: Self, x: Self) -> Self {
+    pub(in crate::bounds) fn angle(y: Self, x: Self) -> Self {
         let angle = f64::atan2(y.middle(), x.middle());
         // The sine of the angle between the middle and any point of the box, seen from the origin,
         // is at most the ratio of the box's radius to the distance of its middle.
@@ -139,7 +139,7 @@ impl Interval {
     }
 
     /// The arc cosine of the part within `[-1, 1]`.
-    pub(super) fn acos(self) -> Self {
+    pub(in crate::bounds) fn acos(self) -> Self {
         Self {
             low: (self.high.clamp(-1.0, 1.0).acos() - LIBRARY).max(0.0),
             high: (self.low.clamp(-1.0, 1.0).acos() + LIBRARY).next_up(),
@@ -147,7 +147,7 @@ impl Interval {
     }
 
     /// `2 x`.
-    pub(super) fn twice(self) -> Self {
+    pub(in crate::bounds) fn twice(self) -> Self {
         Self {
             low: 2.0 * self.low,
             high: 2.0 * self.high,
@@ -155,7 +155,7 @@ impl Interval {
     }
 
     /// `x / 2`.
-    pub(super) fn half(self) -> Self {
+    pub(in crate::bounds) fn half(self) -> Self {
         Self {
             low: 0.5 * self.low,
             high: 0.5 * self.high,
@@ -164,7 +164,7 @@ impl Interval {
 }
 
 /// An upper bound on `2 asin(sqrt(x))`: half a turn for `x >= 1/2`, else from the tangent.
-pub(super) fn twice_asin_of_root(x: f64) -> f64 {
+pub(in crate::bounds) fn twice_asin_of_root(x: f64) -> f64 {
     if x >= 0.5 {
         return Interval::PI.high;
     }

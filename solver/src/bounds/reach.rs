@@ -46,6 +46,7 @@ mod covering;
 mod form;
 mod meeting;
 mod profile;
+mod rests;
 mod rounded_box;
 #[cfg(test)]
 mod tests;
@@ -175,7 +176,7 @@ impl SlewsInBox {
         if least >= 1.0 {
             return Covered::Excluded;
         }
-        if !(least >= LEAST_SCALE) {
+        if least.is_nan() || least < LEAST_SCALE {
             return Covered::GivenUp;
         }
         Covering::new(&profile, self.turn, self.missed, steps).exclude(least, 1.0)
@@ -184,10 +185,7 @@ impl SlewsInBox {
 
 impl NormPremise {
     fn new(normals: Vec<Vector3<f64>>, least_s: f64, missed: f64) -> Self {
-        let longest = normals
-            .iter()
-            .map(|normal| normal.norm())
-            .fold(0.0, f64::max);
+        let longest = normals.iter().map(Vector3::norm).fold(0.0, f64::max);
         Self {
             normals,
             least_s: least_s - missed * longest * (1.0 + ROUNDING),

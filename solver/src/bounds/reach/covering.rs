@@ -97,6 +97,7 @@ impl<'a> Covering<'a> {
             }
         }
         while let Some(cell) = open.pop() {
+            self.budget = self.budget.saturating_sub(1);
             if self.budget == 0 {
                 return Covered::GivenUp;
             }
@@ -191,7 +192,7 @@ impl<'a> Covering<'a> {
         };
         // Backwards in time, costates have the other sign.
         let there = tubes[1].in_body().map(|u| u.scaled(-1.0));
-        let sides = [tubes[0].in_body(), there].map(|u| u.map(|u| u.hull()));
+        let sides = [tubes[0].in_body(), there].map(|u| u.each_ref().map(Form::hull));
         let shares = sides.map(|u| each(|i| u[i] / Interval::exactly(steady[i])));
         let inside = |side: usize, axis: usize, sign: f64| {
             let own = shares[side][axis];
@@ -240,7 +241,7 @@ impl<'a> Covering<'a> {
         let both = a + b;
         let bent = a.min(b) * (0.5 * both + 0.1014 * both * both) * (1.0 + 1e-9);
         let rest = (bent + self.missed) * 1.01 + 1e-10;
-        let apart = difference(&forward.deviation.map(|x| x.of_places()), &behind);
+        let apart = difference(&forward.deviation.map(Form::of_places), &behind);
         Some(each(|i| {
             apart[i].minus(&Form::exactly(gap[i])).inflated(rest)
         }))

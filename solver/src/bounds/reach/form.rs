@@ -149,7 +149,11 @@ impl Form {
     }
 }
 
-/// Three values; inlined, unlike the map of an array, which takes twice the time of a covering.
+/// Three values. The map of an array is not inlined by itself.
+#[expect(
+    clippy::inline_always,
+    reason = "measured: half of the time of a covering"
+)]
 #[inline(always)]
 pub(super) fn each<T>(mut of: impl FnMut(usize) -> T) -> [T; 3] {
     [of(0), of(1), of(2)]

@@ -8,6 +8,9 @@ use nalgebra::Vector3;
 
 /// Relative increase of the limits, far above the rounding of kinks and durations.
 const RAISED: f64 = 1e-9;
+/// Share of the duration below which two kinks are one: the limits between them are lower by much less than what they
+/// are raised by.
+const SAME: f64 = 1e-13;
 /// Parts in which a ramp is followed.
 const SHORT: u32 = 4;
 /// Parts of a piece for the integral of the box norm.
@@ -52,7 +55,7 @@ impl Piece {
 
     /// Whether the limits do not change.
     pub(super) fn is_steady(&self) -> bool {
-        self.limits[0] == self.limits[1]
+        self.limits[0].map(f64::to_bits) == self.limits[1].map(f64::to_bits)
     }
 
     /// The limits at a share of the piece, up to a few units in the last place.
@@ -75,7 +78,7 @@ pub(super) struct Profile {
 impl Profile {
     pub(super) fn of(envelope: &RateEnvelope, duration: f64) -> Self {
         let mut times = envelope.kinks(duration).to_vec();
-        times.dedup_by(|b, a| *b - *a <= 1e-9 * duration);
+        times.dedup_by(|b, a| *b - *a <= SAME * duration);
         let last = times.len() - 1;
         times[last] = duration;
         let at = |t: f64| each(|i| envelope.available(i, t, duration) * (1.0 + RAISED));

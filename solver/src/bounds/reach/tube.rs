@@ -2,6 +2,7 @@
 
 use super::form::{Form, VectorForm, combined, cross, difference, each, length, long, sum};
 use super::profile::{Piece, Profile, around};
+use super::rests::fold;
 use super::rounded_box::{Ranges, WAIST, WALL, level_form, level_of, support, support_form};
 use crate::bounds::interval::Interval;
 use nalgebra::{Matrix3, Rotation3, Vector3};
@@ -29,7 +30,8 @@ pub(super) struct Tube {
     costate: VectorForm,
     /// The scale.
     scale: Form,
-    /// The level so far: that of the begin and what grew with the limits.
+    /// The level so far: that of the begin and what grew with the limits. Its symbols are those of places alone, since
+    /// the others have another meaning after every step.
     pub(super) level: Form,
     /// Whether the equation of the deviation held.
     is_followed: bool,
@@ -103,11 +105,8 @@ impl Tube {
             let left = piece.length - at;
             let u = self.in_body();
             let step = self.step_length(&u, piece, at, left);
-            let h = if step.length >= left * 0.999_999 {
-                left
-            } else {
-                step.length
-            };
+            let is_last = step.length >= left * 0.999_999;
+            let h = if is_last { left } else { step.length };
             let part = Piece {
                 length: h,
                 limits: [
@@ -118,9 +117,9 @@ impl Tube {
             if step.is_straight {
                 self.straight(&u, &part);
             } else {
-                self.curved(&u, &part)?;
+                self.curved(&u, &part);
             }
-            at = if h == left { piece.length } else { at + h };
+            at = if is_last { piece.length } else { at + h };
             if !self.is_followed || length(&self.deviation) > widest {
                 return Err(TooWide);
             }
@@ -247,14 +246,14 @@ impl Tube {
                 let growth = part.limits[1][i] - part.limits[0][i];
                 if growth != 0.0 {
                     let mean = u[i].plus(&then[i]).scaled(0.5 * signs[i]).inflated(bent);
-                    self.level = self.level.plus(&mean.scaled(growth));
+                    self.level = self.level.plus(&mean.of_places().scaled(growth));
                 }
             }
         }
     }
 
     /// A step on which costates may be in walls.
-    fn curved(&mut self, u: &VectorForm, part: &Piece) -> Result<(), TooWide> {
+    fn curved(&mut self, u: &VectorForm, part: &Piece) {
         let h = part.length;
         let (begin, mid, end) = (part.limits[0], part.at(0.5), part.limits[1]);
         let scale = self.scale.hull();
@@ -334,7 +333,6 @@ impl Tube {
                 self.level = self.level.plus(&mean.scaled(growth));
             }
         }
-        Ok(())
     }
 
     /// Adds a change of the deviation over a step on which it changes by so much at most in a second.
@@ -347,67 +345,6 @@ impl Tube {
     }
 }
 
-/// Puts the rests of a vector into its last three symbols, so that they are turned with it from now on.
-fn fold(v: &mut VectorForm) {
-    let rests = each(|i| v[i].rest);
-    let known = Matrix3::from_fn(|i, k| v[i].slopes[3 + k]);
-    let kept = in_parallelepiped(&known, rests).unwrap_or_else(|| in_box(&known, rests));
-    for i in 0..3 {
-        for k in 0..3 {
-            v[i].slopes[3 + k] = kept[(i, k)];
-        }
-        v[i].rest = 0.0;
-    }
-}
-
-/// A longer parallelepiped that contains a given one and a box around each of its points; `None` where it would be
-/// much longer.
-fn in_parallelepiped(known: &Matrix3<f64>, rests: [f64; 3]) -> Option<Matrix3<f64>> {
-    let inverse = known.try_inverse()?;
-    // x = B^-1 r is C r + (1 - C B) x with the computed inverse C.
-    let off = (Matrix3::identity() - inverse * known).abs();
-    let off = off.row_sum().max().max(off.column_sum().max()) * 3.0 + 1e-9;
-    if !(off < 1e-3) {
-        return None;
-    }
-    let shares = inverse.abs() * Vector3::from(rests);
-    let longer = shares.add_scalar(shares.max() * off * 1.01) * (1.0 + 1e-9);
-    if !(longer.max() < LONGER) {
-        return None;
-    }
-    let mut kept = *known;
-    for k in 0..3 {
-        let factor = 1.0 + longer[k];
-        kept.column_mut(k)
-            .iter_mut()
-            .for_each(|x| *x *= factor * (1.0 + 1e-14));
-    }
-    Some(kept)
-}
-
-/// A box along the longest edge of a parallelepiped that contains it, and a box around each of its points.
-fn in_box(known: &Matrix3<f64>, rests: [f64; 3]) -> Matrix3<f64> {
-    let mut order = [0, 1, 2];
-    order.sort_by(|i, j| known.column(*j).norm().total_cmp(&known.column(*i).norm()));
-    let sorted = Matrix3::from_fn(|i, k| known[(i, order[k])]);
-    let mut q = sorted.qr().q();
-    if !q.iter().all(|x| x.is_finite()) || (q.transpose() * q - Matrix3::identity()).amax() > 1e-12
-    {
-        q = Matrix3::identity();
-    }
-    let within = (q.transpose() * known).abs();
-    let around = q.transpose().abs() * Vector3::from(rests);
-    let mut kept = q;
-    for k in 0..3 {
-        // Of length one up to rounding.
-        let extent = (within.row(k).sum() + around[k]) * (1.0 + 1e-9) + 1e-300;
-        kept.column_mut(k).iter_mut().for_each(|x| *x *= extent);
-    }
-    kept
-}
-
-/// Share by which the edges of a parallelepiped may become longer in one step.
-const LONGER: f64 = 0.2;
 /// Steps in walls: as a share of the tube's radius, and within these limits, rad.
 const FINE: f64 = 0.5;
 const FINEST: f64 = 0.006;

@@ -151,7 +151,8 @@ impl CheckedCertificate {
 ///
 /// Takes some 10 ms for every leg with a bound and, if there is a bound on all tours, as much for
 /// every distinct leg that can be part of a tour, divided among the workers; some 50 ms more for each whose
-/// strongest bound comes from a norm, and seconds with many wheels. The leg store is not used.
+/// strongest bound comes from a norm, and seconds with many wheels. The strongest bounds of the plan's legs and of
+/// those of the shortest tour take up to ten seconds each. The leg store is not used.
 #[must_use]
 pub fn verify_certificate(
     scenario: &Scenario,

@@ -28,6 +28,16 @@ impl<'a> ProvedLegs<'a> {
         }
     }
 
+    /// Sets the bounds of legs of which more is known now.
+    pub(super) fn replace(&self, legs: &[(Place, Place)], bounds: Vec<Option<CertifiedLeg>>) {
+        let mut table = self.table.write().unwrap_or_else(PoisonError::into_inner);
+        for (leg, bound) in legs.iter().zip(bounds) {
+            if bound.is_some() {
+                table.set(*leg, bound);
+            }
+        }
+    }
+
     /// Lower bound on any leg between two places, s; `None` where nothing is proved so far.
     pub(super) fn bound(&self, from: Place, to: Place) -> Option<f64> {
         self.table().bound(from, to)

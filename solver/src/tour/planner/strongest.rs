@@ -4,6 +4,9 @@
 //! are polytopes prove more of legs of arrays, with unequal ramps, and between targets that stop some components only
 //! (`bounds::certified`). Both are proved a second time in intervals, and what is not confirmed does not count. Bounds
 //! with stored momentum, with a free roll, and by a limit of the norm of the rate are proved once.
+//!
+//! Boxes that change in time (`bounds::reach`) prove most, in seconds a leg. They are used for the legs that are asked
+//! for, and for the bound on all tours for those of the shortest tour, again and again until it has no other legs.
 
 use super::bounds_by_form::BoundsByForm;
 use super::canonical::CanonicalLeg;
@@ -13,15 +16,18 @@ use super::legs::certify;
 use super::places::Places;
 use super::proved_legs::ProvedLegs;
 use super::tables::CertifiedLeg;
-use super::tour_bound::tour_bound;
+use super::tour_bound::shortest;
 use super::{Run, named_pairs, tour_pairs};
+use crate::bounds::polytope::certificate::NormCertificate;
 use crate::model::scenario::Scenario;
 use crate::tour::order::Place;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 use std::sync::{Mutex, PoisonError};
 
 /// Number of targets up to which all tours are bounded.
 const MAX_TARGETS: usize = 20;
+/// Number of shortest tours whose legs are bounded by boxes that change in time.
+const MAX_ROUNDS: usize = 30;
 
 /// Lower bounds on legs and tours of a scenario.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -37,7 +43,7 @@ pub struct StrongestBounds {
 pub struct StrongestBound {
     /// The bound, s.
     pub bound_s: f64,
-    /// Whether it is proved a second time, in intervals.
+    /// Whether it is proved with outward rounding: a second time, in intervals, or by a box that changes in time.
     pub is_confirmed: bool,
 }
 
@@ -60,16 +66,17 @@ pub(super) fn strongest_between(
     legs: &[Option<(Place, Place)>],
     run: Run<'_>,
 ) -> StrongestBounds {
-    let known = BoundsByForm::default();
     // Forms of legs whose bounds are proved once.
     let once: Mutex<BTreeSet<String>> = Mutex::default();
     let lock = || once.lock().unwrap_or_else(PoisonError::into_inner);
     let form = |pair: &Option<(Place, Place)>| Some(canonical(places, (*pair)?));
-    let prove = |pairs: &[Option<(Place, Place)>]| {
+    let prove = |known: &BoundsByForm, pairs: &[Option<(Place, Place)>], by: Proof| {
         let bound = |index: usize, leg: &CanonicalLeg| {
             let pair = pairs[index].filter(|_| !run.stop.is_set())?;
-            let (bound, is_confirmed) = strongest(places, pair, leg);
-            if !is_confirmed {
+            let (bound, is_confirmed) = by(places, pair, leg);
+            if is_confirmed {
+                lock().remove(leg.key());
+            } else {
                 lock().insert(leg.key().to_owned());
             }
             Some(bound)
@@ -77,13 +84,29 @@ pub(super) fn strongest_between(
         let forms: Vec<_> = pairs.iter().map(form).collect();
         known.of(&forms, run.pool, |_| (), bound)
     };
-    let proved = prove(legs);
-    let between =
-        |pairs: &[(Place, Place)]| prove(&pairs.iter().copied().map(Some).collect::<Vec<_>>());
+    let some = |pairs: &[(Place, Place)]| pairs.iter().copied().map(Some).collect::<Vec<_>>();
+    let (by_norms, all) = (BoundsByForm::default(), BoundsByForm::default());
+    let proved = prove(&all, legs, strongest);
+    let between = |pairs: &[(Place, Place)]| prove(&by_norms, &some(pairs), by_norm);
     let bounds = ProvedLegs::new(places, Box::new(between));
     let few = places.scenario.targets().len() <= MAX_TARGETS;
-    let tour_s = few.then(|| tour_bound(places, &bounds, run.pool, run.stop));
-    let tour_s = tour_s.flatten().filter(|_| !run.stop.is_set());
+    let mut tour_s = None;
+    let mut raised = HashSet::new();
+    for _ in 0..MAX_ROUNDS {
+        let found = few.then(|| shortest(places, &bounds, run.pool, run.stop));
+        let Some((bound_s, order)) = found.flatten() else {
+            break;
+        };
+        tour_s = Some(bound_s);
+        let route = order.map_or_else(Vec::new, |order| places.route(&order, true));
+        let on_it = route.windows(2).map(|leg| (leg[0], leg[1]));
+        let fresh: Vec<_> = on_it.filter(|leg| raised.insert(*leg)).collect();
+        if fresh.is_empty() || run.stop.is_set() {
+            break;
+        }
+        bounds.replace(&fresh, prove(&all, &some(&fresh), strongest));
+    }
+    let tour_s = tour_s.filter(|_| !run.stop.is_set());
     let is_confirmed = |pair| form(pair).is_some_and(|leg| !lock().contains(leg.key()));
     StrongestBounds {
         legs: legs
@@ -103,15 +126,49 @@ pub(super) fn strongest_between(
     }
 }
 
-/// The largest bound on a leg that is proved, and whether that is confirmed.
+/// Proves a bound on a leg, and tells whether it is confirmed.
+type Proof = fn(&Places<'_>, (Place, Place), &CanonicalLeg) -> (CertifiedLeg, bool);
+
+/// The largest bound on a leg by boxes and norms.
+fn by_norm(places: &Places<'_>, pair: (Place, Place), leg: &CanonicalLeg) -> (CertifiedLeg, bool) {
+    let (bound, is_confirmed, _) = with_norm(places, pair, leg);
+    (bound, is_confirmed)
+}
+
+/// The largest bound on a leg that is proved.
 fn strongest(
     places: &Places<'_>,
     pair: (Place, Place),
     leg: &CanonicalLeg,
 ) -> (CertifiedLeg, bool) {
+    let (bound, is_confirmed, norm) = with_norm(places, pair, leg);
+    if places.dynamics.has_momentum() || has_free_roll(places.scenario, pair) {
+        return (bound, is_confirmed);
+    }
+    let known_s = bound.lower_bound;
+    let in_box_s =
+        known_s.and_then(|known_s| prove_in_box(places, pair, leg, known_s, norm.as_ref()));
+    match in_box_s {
+        Some(_) => (
+            CertifiedLeg {
+                lower_bound: in_box_s,
+                ..bound
+            },
+            true,
+        ),
+        None => (bound, is_confirmed),
+    }
+}
+
+/// The largest bound on a leg by boxes and norms, whether it is confirmed, and the certificate of the norm that is.
+fn with_norm(
+    places: &Places<'_>,
+    pair: (Place, Place),
+    leg: &CanonicalLeg,
+) -> (CertifiedLeg, bool, Option<NormCertificate>) {
     let boxed = certify(places, leg);
     let Some(once_s) = boxed.lower_bound else {
-        return (boxed, true);
+        return (boxed, true, None);
     };
     let with = |bound_s| CertifiedLeg {
         lower_bound: Some(bound_s),
@@ -119,26 +176,13 @@ fn strongest(
     };
     if places.dynamics.has_momentum() || has_free_roll(places.scenario, pair) {
         let beyond = places.certified.beyond(&leg.from, &leg.to, once_s);
-        return (with(beyond.map_or(once_s, |beyond| beyond.bound_s)), false);
+        let bound_s = beyond.map_or(once_s, |beyond| beyond.bound_s);
+        return (with(bound_s), false, None);
     }
     let confirmed_s = prove_by_box(places, pair, leg, None).ok();
     let known_s = confirmed_s.unwrap_or(once_s);
-    let norm = prove_by_norm(places, pair, leg, known_s);
-    let (bound, certificate) = match &norm {
-        Some((bound, certificate)) => (*bound, certificate.as_ref()),
-        None => {
-            let is_confirmed = confirmed_s.is_some();
-            (
-                StrongestBound {
-                    bound_s: known_s,
-                    is_confirmed,
-                },
-                None,
-            )
-        }
-    };
-    match prove_in_box(places, pair, leg, bound.bound_s, certificate) {
-        Some(in_box_s) => (with(in_box_s), true),
-        None => (with(bound.bound_s), bound.is_confirmed),
+    match prove_by_norm(places, pair, leg, known_s) {
+        Some((beyond, norm)) => (with(beyond.bound_s), beyond.is_confirmed, norm),
+        None => (with(known_s), confirmed_s.is_some(), None),
     }
 }

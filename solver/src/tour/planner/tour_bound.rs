@@ -40,11 +40,21 @@ pub(super) fn tour_bound(
     pool: &SolverPool,
     stop: &StopSignal,
 ) -> Option<f64> {
+    Some(shortest(places, bounds, pool, stop)?.0)
+}
+
+/// The same with an order of the targets that has such a bound or hardly more; without one for very many targets.
+pub(super) fn shortest(
+    places: &Places<'_>,
+    bounds: &ProvedLegs<'_>,
+    pool: &SolverPool,
+    stop: &StopSignal,
+) -> Option<(f64, Option<Vec<usize>>)> {
     let tours = AdditiveTours::new(places, bounds);
     let targets = places.scenario.targets().len() as u64;
     let nodes = NODES_TIMES_TARGETS_CUBED / targets.pow(3).max(1);
-    let bound = if nodes == 0 {
-        least_bound(&tours, stop)
+    let (bound, order) = if nodes == 0 {
+        (least_bound(&tours, stop), None)
     } else {
         let settings = SearchSettings {
             node_limit: Some(nodes),
@@ -52,10 +62,11 @@ pub(super) fn tour_bound(
             ..SearchSettings::default()
         };
         let nothing = KnownOrders::default();
-        search(&tours, nothing, &settings, pool, stop, &Unobserved).lower_bound_s
+        let found = search(&tours, nothing, &settings, pool, stop, &Unobserved);
+        (found.lower_bound_s, found.best.map(|best| best.order))
     };
     let proved = bounds.has_bounds();
-    proved.then(|| within_tolerance(places, bound))
+    proved.then(|| (within_tolerance(places, bound), order))
 }
 
 /// The same for the tours along one route.

@@ -122,7 +122,7 @@ fn tubes_enclose_their_members() {
             },
         ];
         let costate = direction(&mut random);
-        let width = [0.003, 0.01, 0.03][random.below(3) as usize];
+        let width = [0.003, 0.01, 0.03][random.below(3)];
         let slopes = Matrix3::from_fn(|_, k| {
             if k < 2 {
                 width * number(&mut random, -1.0, 1.0)

@@ -61,11 +61,10 @@ fn every_tour_is_planned_and_verified() {
     }
 }
 
-/// Wheels that take minutes to exchange what they store: no program of the leg converges.
-#[test]
-fn a_plan_with_a_constructed_leg_is_not_called_optimal() {
+/// Wheels that take minutes to exchange what they store: no program of a leg to the target converges.
+fn slow_exchange() -> ScenarioSpec {
     let wheel = |axis, inertia, torque| wheel(axis, inertia, torque, 123.743);
-    let spec = ScenarioSpec {
+    ScenarioSpec {
         spacecraft: SpacecraftSpec {
             inertia_kg_m2: [
                 [5.405_3e-3, 0.0, 0.0],
@@ -90,12 +89,35 @@ fn a_plan_with_a_constructed_leg_is_not_called_optimal() {
             ..TargetSpec::default()
         }],
         ..ScenarioSpec::default()
-    };
-    let plan = plan_of(&spec);
+    }
+}
+
+#[test]
+fn a_plan_with_a_constructed_leg_is_not_called_optimal() {
+    let plan = plan_of(&slow_exchange());
     assert_eq!(plan.legs[0].solver_status, "constructed");
     assert_eq!(plan.optimality, Optimality::Feasible);
     let certified = plan.certified_lower_bound_s.expect("a bound");
     assert!((plan.lower_bound_s - certified).abs() < 1e-9 && certified < 0.1 * plan.total_time_s);
+}
+
+/// That no program converges does not exclude a target that is worth more than all others.
+#[test]
+fn a_schedule_is_not_called_optimal_that_leaves_out_what_was_not_solved() {
+    let mut spec = slow_exchange();
+    spec.latest_end_s = Some(20_000.0);
+    spec.targets[0].value = Some(10.0);
+    spec.targets.push(TargetSpec {
+        id: "near".to_owned(),
+        attitude: AttitudeSpec::Quaternion([0.0, 0.0, 0.02, 0.999_8]),
+        value: Some(1.0),
+        after: vec!["target".to_owned()],
+        ..TargetSpec::default()
+    });
+    let plan = plan_of(&spec);
+    let schedule = plan.schedule.as_ref().expect("a schedule");
+    assert!(schedule.value_bound >= 11.0 - 1e-9);
+    assert_eq!(plan.optimality, Optimality::Feasible);
 }
 
 #[test]

@@ -3,7 +3,8 @@
 //! Where every target is visited at rest, the legs do not couple: a table of their times is all that
 //! the choice of targets and their order needs, and to arrive early means to wait at rest. Of few
 //! targets all legs are solved first. Of many, legs count with their lower bounds, and those of the best
-//! schedule are solved until none of them is a bound: then it is the best of all.
+//! schedule are solved until none of them is a bound: then it is the best of all. A leg whose program does not
+//! converge keeps its bound; the best schedule that can be flown is then compared with the best one on bounds.
 //!
 //! Where a rest leaves the roll or the momenta of a fourth wheel free, legs hardly couple: schedules are
 //! looked for in which every target is visited in one attitude, with the momenta of the start, and compared
@@ -221,7 +222,7 @@ impl Planning<'_> {
         let Some(best) = &found.best else {
             return if self.stop.is_set() {
                 Outcome::StoppedEmpty
-            } else if found.complete && !self.lacks_legs() {
+            } else if found.complete {
                 Outcome::Infeasible(conflict(self.tours.places, &self.problem, &times))
             } else {
                 unsolved(self.tours)
@@ -233,20 +234,19 @@ impl Planning<'_> {
             times: &times,
             limits: self.limits,
             stop: self.stop,
-            are_flown: chains.is_none(),
+            is_flown: &|order| chains.is_none() && self.is_flown(order),
         };
-        let proved = found.complete && !self.lacks_legs();
         let facts = ClockFacts {
             value: best.value,
             value_bound: found.value_bound,
-            skipped: inclusions.of(self.tours.places.scenario, best, proved),
+            skipped: inclusions.of(self.tours.places.scenario, best, found.complete),
             chains: chains.map(<[SolvedChain]>::to_vec),
         };
         let order = solved(best);
         self.builder.compare_with_rest(&order);
         self.builder.set_clock(facts);
         self.builder
-            .scheduled_outcome(&incumbent(&order, found), proved)
+            .scheduled_outcome(&incumbent(&order, found), found.complete)
     }
 
     /// What was found, with the bounds on all schedules in place of those on the schedules looked for.
@@ -299,23 +299,25 @@ impl Planning<'_> {
         }
     }
 
-    /// Time of a leg, s, or a lower bound on it.
+    /// Lower bound on the time of a leg, s: its time where its program has converged, else the certified one.
     fn time_s(&self, from: Place, to: Place) -> f64 {
-        self.known_s(from, to)
-            .unwrap_or_else(|| self.tours.leg_bound(from, to))
+        self.tours.leg_bound(from, to)
     }
 
-    /// Time of a leg that is solved, s.
-    fn known_s(&self, from: Place, to: Place) -> Option<f64> {
+    /// Time of a leg as it is flown, s, once its solution has been looked for. A leg without one is not flown,
+    /// which proves nothing of schedules with it.
+    fn flown_s(&self, from: Place, to: Place) -> Option<f64> {
         let leg = self.tours.known_free_leg(from, to)?.leg;
-        Some(leg.solution.least_duration().unwrap_or(NO_LEG_S))
+        Some(leg.solution.duration().unwrap_or(NO_LEG_S))
     }
 
-    /// Whether a leg has no solution, without which a better schedule cannot be excluded.
-    fn lacks_legs(&self) -> bool {
-        let pairs = tour_pairs(self.tours.places);
-        let failed = |leg: &(Place, Place)| self.known_s(leg.0, leg.1) == Some(NO_LEG_S);
-        pairs.iter().any(failed)
+    /// Whether no leg of an order is longer as it is flown than in the search on bounds.
+    fn is_flown(&self, order: &[usize]) -> bool {
+        let route = self.tours.places.route(order, true);
+        route.windows(2).all(|leg| {
+            let known = self.tours.known_free_leg(leg[0], leg[1]);
+            known.is_none_or(|known| known.leg.solution.least_duration().is_some())
+        })
     }
 
     /// Solves all legs between places, each with the conditions of its own ends only.

@@ -41,7 +41,12 @@ impl Planning<'_> {
             let order = found.best.as_ref().map(|best| &best.order[..]);
             let open = order.map_or(Vec::new(), |order| self.open_legs(order));
             if open.is_empty() && (found.complete || has_all) {
-                return self.conclude(&found, None);
+                if order.is_none_or(|order| self.is_flown(order)) {
+                    return self.conclude(&found, None);
+                }
+                let flown = self.search_flown();
+                self.relaxed.get_or_insert(found);
+                return self.conclude(&flown, None);
             }
             if self.stop.is_set() {
                 let known = TimedResult {
@@ -121,7 +126,7 @@ impl Planning<'_> {
     /// The schedule of the visits of an order that fit one after the other, all of whose legs are solved:
     /// legs take longer than their estimates.
     fn what_fits(&self, order: &[usize]) -> Option<TimedOrder> {
-        let times = |from, to| self.known_s(from, to).unwrap_or(NO_LEG_S);
+        let times = |from, to| self.flown_s(from, to).unwrap_or(NO_LEG_S);
         let mut fitting = self.problem.schedule_of(&[], &times);
         let mut kept: Vec<usize> = Vec::new();
         for target in order {
@@ -178,17 +183,25 @@ impl Planning<'_> {
         let first = self.told_order();
         search_from(all, &first, limits, &stop, &mut |now| {
             let order = now.best.as_ref().map(|best| &best.order[..]);
-            if order.is_some_and(|order| self.open_legs(order).is_empty()) {
+            if order.is_some_and(|order| self.open_legs(order).is_empty() && self.is_flown(order)) {
                 self.tell(now, None);
             }
         })
+    }
+
+    /// The search for the best schedule of legs that are flown, whose bounds are not those of all schedules.
+    fn search_flown(&self) -> TimedResult {
+        let times = |from, to| self.flown_s(from, to).unwrap_or(NO_LEG_S);
+        let (all, stop) = ((&self.problem, &times), || self.stop.is_set());
+        let first = self.told_order();
+        search_from(all, &first, self.limits_on_times(), &stop, &mut |_| ())
     }
 
     /// A good schedule all of whose legs are solved, or else have an estimate.
     fn search_solved(&self, estimates: Option<&TurnEstimates<'_>>) -> TimedResult {
         let times = |from, to| {
             let estimate = || estimates.map(|estimates| estimates.duration_s(from, to));
-            self.known_s(from, to).or_else(estimate).unwrap_or(NO_LEG_S)
+            self.flown_s(from, to).or_else(estimate).unwrap_or(NO_LEG_S)
         };
         let limits = SearchLimits {
             labels: Some(0),

@@ -36,8 +36,8 @@ pub(super) struct Inclusions<'a, T> {
     pub(super) times: &'a T,
     pub(super) limits: SearchLimits,
     pub(super) stop: &'a StopSignal,
-    /// Whether the times are those of motions, and not lower bounds.
-    pub(super) are_flown: bool,
+    /// Whether the times of the legs of an order are those of motions, and not lower bounds.
+    pub(super) is_flown: &'a dyn Fn(&[usize]) -> bool,
 }
 
 impl<T: TravelTimes> Inclusions<'_, T> {
@@ -95,7 +95,7 @@ impl<T: TravelTimes> Inclusions<'_, T> {
             };
             return (reason, None);
         };
-        if !self.are_flown {
+        if !(self.is_flown)(&with.order) {
             return (SkipReason::ValueTooSmall, None);
         }
         let cost = InclusionCost {

@@ -78,7 +78,8 @@ impl Planning<'_> {
     /// A good order on the times of flown legs.
     fn order_on(&self, flown: &FlownLegs) -> Option<Vec<usize>> {
         let times = |from, to| {
-            let single = self.time_s(from, to);
+            let single = self.flown_s(from, to);
+            let single = single.unwrap_or_else(|| self.time_s(from, to));
             let known = flown.times.get(&(from, to)).copied();
             known.unwrap_or(single * flown.lengthening()).max(single)
         };

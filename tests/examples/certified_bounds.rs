@@ -170,7 +170,7 @@ fn report(name: &str, shares: &[Share]) {
         shares.iter().filter_map(|share| share.strongest),
     );
     let confirmed = shares.iter().filter(|share| share.is_confirmed).count();
-    println!("; {confirmed} proved twice");
+    println!("; {confirmed} confirmed");
 }
 
 fn print_range(kind: &str, shares: impl Iterator<Item = f64>) {

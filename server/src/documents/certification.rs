@@ -29,7 +29,7 @@ struct ClaimDocument {
     certified_lower_bound_s: Option<Number>,
     /// The largest lower bound that is known to hold, s.
     strongest_lower_bound_s: Option<Number>,
-    /// Whether that is proved a second time too.
+    /// Whether that is proved with outward rounding.
     strongest_confirmed: Option<bool>,
     verdict: &'static str,
     reason: Option<String>,

@@ -73,7 +73,7 @@ const SMALL_GAIN: f64 = 2e-3;
 /// Largest number of trials.
 const MAX_TRIALS: usize = 8;
 /// Scale below which the known bound is too weak to begin with.
-const LEAST_SCALE: f64 = 0.6;
+const MIN_SCALE: f64 = 0.6;
 /// Relative error allowed for the rounding of a few operations.
 const ROUNDING: f64 = 1e-9;
 
@@ -176,7 +176,7 @@ impl SlewsInBox {
         if least >= 1.0 {
             return Covered::Excluded;
         }
-        if least.is_nan() || least < LEAST_SCALE {
+        if least.is_nan() || least < MIN_SCALE {
             return Covered::GivenUp;
         }
         Covering::new(&profile, self.turn, self.missed, steps).exclude(least, 1.0)

@@ -187,13 +187,13 @@ impl<'a> Covering<'a> {
 
     /// Whether a level curve no higher than this cannot lead from one side to the other.
     fn is_parted(&self, tubes: &[Tube; 2], level: f64) -> bool {
-        let Some(steady) = self.profile.steady() else {
+        let Some(limits) = self.profile.constant_limits() else {
             return false;
         };
         // Backwards in time, costates have the other sign.
         let there = tubes[1].in_body().map(|u| u.scaled(-1.0));
         let sides = [tubes[0].in_body(), there].map(|u| u.each_ref().map(Form::hull));
-        let shares = sides.map(|u| each(|i| u[i] / Interval::exactly(steady[i])));
+        let shares = sides.map(|u| each(|i| u[i] / Interval::exactly(limits[i])));
         let inside = |side: usize, axis: usize, sign: f64| {
             let own = shares[side][axis];
             let own = if sign > 0.0 { own.low } else { -own.high };
@@ -207,7 +207,7 @@ impl<'a> Covering<'a> {
         (0..3).any(|axis| {
             let saddle = (0..3)
                 .filter(|j| *j != axis)
-                .map(|j| steady[axis].hypot(steady[j]));
+                .map(|j| limits[axis].hypot(limits[j]));
             let saddle = saddle.fold(f64::INFINITY, f64::min) * (1.0 - 1e-12);
             level < saddle
                 && [1.0, -1.0].into_iter().any(|sign| {

@@ -54,7 +54,7 @@ impl Piece {
     }
 
     /// Whether the limits do not change.
-    pub(super) fn is_steady(&self) -> bool {
+    pub(super) fn is_constant(&self) -> bool {
         self.limits[0].map(f64::to_bits) == self.limits[1].map(f64::to_bits)
     }
 
@@ -70,7 +70,7 @@ impl Piece {
 pub(super) struct Profile {
     /// Pieces from the begin to the meeting, and from the end to it, backwards in time.
     pub(super) sides: [Vec<Piece>; 2],
-    /// Number of pieces of either side before the limits are steady until the meeting; `None` where they are not the
+    /// Number of pieces of either side before the limits are constant until the meeting; `None` where they are not the
     /// same on both sides then.
     pub(super) ramps: Option<[usize; 2]>,
 }
@@ -100,10 +100,10 @@ impl Profile {
                 }
             })
             .collect();
-        // Met in the middle of a steady piece that is in both halves, else of the duration.
+        // Met in the middle of a constant piece that is in both halves, else of the duration.
         let half = 0.5 * duration;
-        let steady = (0..pieces.len())
-            .filter(|k| pieces[*k].is_steady())
+        let constant = (0..pieces.len())
+            .filter(|k| pieces[*k].is_constant())
             .max_by(|a, b| pieces[*a].length.total_cmp(&pieces[*b].length));
         let mut begin = 0.0;
         let mut starts = vec![];
@@ -111,8 +111,8 @@ impl Profile {
             starts.push(begin);
             begin += piece.length;
         }
-        let cut =
-            steady.unwrap_or_else(|| starts.iter().rposition(|start| *start <= half).unwrap_or(0));
+        let cut = constant
+            .unwrap_or_else(|| starts.iter().rposition(|start| *start <= half).unwrap_or(0));
         let share = ((half - starts[cut]) / pieces[cut].length).clamp(0.1, 0.9);
         let piece = pieces[cut];
         let middle = piece.at(share);
@@ -130,7 +130,7 @@ impl Profile {
         let mut backward: Vec<_> = rest[1..].iter().rev().map(Piece::reversed).collect();
         backward.push(second.reversed());
         let ramps = piece
-            .is_steady()
+            .is_constant()
             .then(|| [forward.len() - 1, backward.len() - 1]);
         let Some(ramps) = ramps else {
             return Self {
@@ -149,8 +149,8 @@ impl Profile {
         }
     }
 
-    /// The limits between the ramps, where they are steady.
-    pub(super) fn steady(&self) -> Option<[f64; 3]> {
+    /// The limits between the ramps, where they are constant.
+    pub(super) fn constant_limits(&self) -> Option<[f64; 3]> {
         self.ramps.map(|ramps| self.sides[0][ramps[0]].limits[0])
     }
 

@@ -138,52 +138,37 @@ impl Tube {
         });
         let scale = self.scale.hull().high;
         let most = each(|i| scale * m[0][i].max(m[1][i]));
-        let distance = hulls.map(|x| if x.contains_zero() { 0.0 } else { x.low.abs().min(x.high.abs()) } - WALL);
+        let distance = hulls.map(|x| x.abs().low - WALL);
         let is_clear = distance.iter().all(|d| *d > 0.0);
         if is_clear {
-            // Up to a wall every rate has its sign: the costate's components change by at most this much.
-            let w = most.map(|x| Interval {
-                low: 0.0,
-                high: x * (1.0 + 1e-12),
+            // Up to a wall every rate has its sign, and at least so much of its limit.
+            let is_constant = piece.is_constant();
+            let least = if is_constant {
+                self.scale.hull().low
+            } else {
+                0.0
+            };
+            let rates = each(|i| {
+                let size = Interval {
+                    low: least * m[0][i] * (1.0 - 1e-12),
+                    high: most[i] * (1.0 + 1e-12),
+                };
+                if hulls[i].low > 0.0 { size } else { -size }
             });
-            let signed = each(|i| if hulls[i].low > 0.0 { w[i] } else { -w[i] });
-            let steady = piece.is_steady();
             let total = long(most) * (1.0 + 1e-12);
+            let acceleration = total * total + piece.steepness() * scale;
             let mut h = left;
             for i in 0..3 {
                 let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                let reach = if steady {
-                    let low = self.scale.hull().low;
-                    let exact = |a: usize| {
-                        let w = Interval {
-                            low: low * m[0][a] * (1.0 - 1e-12),
-                            high: most[a] * (1.0 + 1e-12),
-                        };
-                        if hulls[a].low > 0.0 { w } else { -w }
-                    };
-                    let change = hulls[j] * exact(k) - hulls[k] * exact(j);
-                    let speed = if hulls[i].low > 0.0 {
-                        -change.low
-                    } else {
-                        change.high
-                    };
-                    time_to(distance[i], speed.max(0.0), total * total)
+                let change = hulls[j] * rates[k] - hulls[k] * rates[j];
+                let speed = if hulls[i].low > 0.0 {
+                    -change.low
                 } else {
-                    let change = hulls[j] * signed[k] - hulls[k] * signed[j];
-                    let speed = if hulls[i].low > 0.0 {
-                        -change.low
-                    } else {
-                        change.high
-                    };
-                    time_to(
-                        distance[i],
-                        speed.max(0.0),
-                        total * total + piece.steepness() * scale,
-                    )
+                    change.high
                 };
-                h = h.min(reach);
+                h = h.min(time_to(distance[i], speed.max(0.0), acceleration));
             }
-            if !steady {
+            if !is_constant {
                 h = h.min(0.4 * piece.length);
             }
             if h >= left || h * total > 0.002 {
@@ -224,7 +209,7 @@ impl Tube {
             (part.limits[1][i] - part.limits[0][i]) / h * signs[i]
         }));
         let mut size = off.radius() * corner.norm() * (1.0 + 1e-12);
-        if !part.is_steady() {
+        if !part.is_constant() {
             // int exp(tau w) s tau dt = h^3 / 12 w x s, up to |w|^2 |s| h^4 / 64.
             let second = rate.cross(&steep) * (h * h * h / 12.0);
             let w = rate.norm();
@@ -237,7 +222,7 @@ impl Tube {
         let change = into_start(&middle, &change);
         self.advance(&change, size, h);
         self.middle = middle * half;
-        if !part.is_steady() {
+        if !part.is_constant() {
             // The sizes of the costate's components are smooth: between the values at both ends and h^3 / 12 u''.
             let then = self.in_body();
             let total = high * long(each(|i| part.limits[0][i].max(part.limits[1][i])));

@@ -4,12 +4,9 @@ use super::super::form::{Form, VectorForm, each};
 use super::super::profile::Piece;
 use super::super::rounded_box::{level_of, support, support_form};
 use super::super::tube::Tube;
+use super::number;
 use crate::math::random::SplitMix;
 use nalgebra::{Matrix3, Rotation3, Vector3};
-
-fn number(random: &mut SplitMix, low: f64, high: f64) -> f64 {
-    low + (high - low) * (random.below(1_000_001) as f64 / 1e6)
-}
 
 fn vector(random: &mut SplitMix) -> Vector3<f64> {
     Vector3::from_fn(|_, _| number(random, -1.0, 1.0))

@@ -2,6 +2,7 @@
 
 use super::super::SlewsInBox;
 use super::super::covering::Covered;
+use super::number;
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use crate::bounds::kinematic::ramps::SlewBound;
 use crate::bounds::kinematic::rate_envelope::RateEnvelope;
@@ -18,10 +19,6 @@ fn limits() -> SlewLimits {
         rates_rad_s: Vector3::new(0.0181, 0.0135, 0.0125),
         accelerations_rad_s2: Vector3::new(0.00152, 0.00113, 0.00105),
     }
-}
-
-fn number(random: &mut SplitMix, low: f64, high: f64) -> f64 {
-    low + (high - low) * (random.below(1_000_001) as f64 / 1e6)
 }
 
 /// The slews that make a turn, and the bound on them by a box that does not change.

@@ -44,13 +44,13 @@ impl Planning<'_> {
                 if order.is_none_or(|order| self.is_flown(order)) {
                     return self.conclude(&found, None);
                 }
-                let flown = self.search_flown();
+                let flown = self.search_flown(None, self.limits_on_times());
                 self.relaxed.get_or_insert(found);
                 return self.conclude(&flown, None);
             }
             if self.stop.is_set() {
                 let known = TimedResult {
-                    best: self.search_solved(None).best,
+                    best: self.search_flown(None, self.local_limits()).best,
                     complete: false,
                     end_bound_s: 0.0,
                     ..found
@@ -70,7 +70,7 @@ impl Planning<'_> {
     fn solve_good_schedules(&self) {
         let estimates = TurnEstimates::of(self.tours.places);
         for _ in 0..FIRST_ROUNDS {
-            let found = self.search_solved(Some(&estimates));
+            let found = self.search_flown(Some(&estimates), self.local_limits());
             let order = found.best.as_ref().map(|best| &best.order[..]);
             let open = order.map_or(Vec::new(), |order| self.open_legs(order));
             self.solve(&open);
@@ -160,7 +160,7 @@ impl Planning<'_> {
     /// Reports the best schedule all of whose legs are solved, with the bounds of a search.
     fn tell_solved(&self, bounds: &TimedResult) {
         let known = TimedResult {
-            best: self.search_solved(None).best,
+            best: self.search_flown(None, self.local_limits()).best,
             ..bounds.clone()
         };
         self.tell(&known, None);
@@ -189,23 +189,24 @@ impl Planning<'_> {
         })
     }
 
-    /// The search for the best schedule of legs that are flown, whose bounds are not those of all schedules.
-    fn search_flown(&self) -> TimedResult {
-        let times = |from, to| self.flown_s(from, to).unwrap_or(NO_LEG_S);
-        let (all, stop) = ((&self.problem, &times), || self.stop.is_set());
-        let first = self.told_order();
-        search_from(all, &first, self.limits_on_times(), &stop, &mut |_| ())
+    /// Local searches alone.
+    fn local_limits(&self) -> SearchLimits {
+        SearchLimits {
+            labels: Some(0),
+            ..self.limits
+        }
     }
 
-    /// A good schedule all of whose legs are solved, or else have an estimate.
-    fn search_solved(&self, estimates: Option<&TurnEstimates<'_>>) -> TimedResult {
+    /// The search over schedules all of whose legs are flown, or else have an estimate. Its bounds are not those of all
+    /// schedules.
+    fn search_flown(
+        &self,
+        estimates: Option<&TurnEstimates<'_>>,
+        limits: SearchLimits,
+    ) -> TimedResult {
         let times = |from, to| {
             let estimate = || estimates.map(|estimates| estimates.duration_s(from, to));
             self.flown_s(from, to).or_else(estimate).unwrap_or(NO_LEG_S)
-        };
-        let limits = SearchLimits {
-            labels: Some(0),
-            ..self.limits
         };
         let all = (&self.problem, &times);
         let stop = || self.stop.is_set();

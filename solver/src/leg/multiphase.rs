@@ -236,12 +236,39 @@ impl<'a> MultiphaseSolve<'a> {
     }
 
     /// Runs one pass after the other; whether all converge.
+    ///
+    /// With a small barrier parameter the engine creeps along the limits if the motion before the pass is far from a
+    /// solution. A pass whose iterations are used up is run once more, with a large one, from the motion that it
+    /// has reached.
     fn run_passes(&mut self, passes: &[Pass], stop: &dyn Fn() -> Option<StopReason>) -> bool {
         passes.iter().all(|pass| {
-            self.chain.draw_controls_to(&self.iterate, pass.penalty);
-            self.engine.settings = pass.settings;
-            self.converges(stop)
+            let cold = Settings::COLD.initial_barrier;
+            if self.converges_by(pass, pass.settings.initial_barrier, stop) {
+                return true;
+            }
+            let is_used_up = self.solution.status == NlpStatus::IterationLimit;
+            if !is_used_up || pass.settings.initial_barrier >= cold {
+                return false;
+            }
+            self.iterate = scaled(&self.solution.profile, &self.scales);
+            self.set_clock();
+            self.converges_by(pass, cold, stop)
         })
+    }
+
+    /// Runs one pass with a barrier parameter for its first iteration; whether it converges.
+    fn converges_by(
+        &mut self,
+        pass: &Pass,
+        initial_barrier: f64,
+        stop: &dyn Fn() -> Option<StopReason>,
+    ) -> bool {
+        self.chain.draw_controls_to(&self.iterate, pass.penalty);
+        self.engine.settings = Settings {
+            initial_barrier,
+            ..pass.settings
+        };
+        self.converges(stop)
     }
 
     /// Corrects the turns of a rough motion with cones, keeps its intervals near them from growing,

@@ -120,6 +120,71 @@ fn a_schedule_is_not_called_optimal_that_leaves_out_what_was_not_solved() {
     assert_eq!(plan.optimality, Optimality::Feasible);
 }
 
+/// Six wheels with torques of many sizes that take minutes to reach their speeds, so that targets that stop z alone are
+/// passed at rates far from those of the first motion.
+fn slow_wheels(order: [usize; 5]) -> ScenarioSpec {
+    let torques = [0.0042, 0.0066, 0.0025, 0.0064, 0.0039, 0.0056];
+    let around = (0..6).map(|n| f64::from(n) * std::f64::consts::FRAC_PI_3);
+    let wheels = around.zip(torques).map(|(angle, torque)| {
+        let axis = [0.82 * angle.cos(), 0.82 * angle.sin(), 0.57];
+        wheel(axis, 0.002, torque, 600.0)
+    });
+    let attitudes = [
+        [0.393, 0.716, -0.085, 0.571],
+        [0.231, -0.656, 0.112, 0.71],
+        [0.101, 0.598, -0.239, 0.758],
+        [-0.066, 0.656, 0.048, 0.75],
+        [-0.234, -0.553, -0.04, 0.799],
+    ];
+    let targets = (0..5).map(|target| TargetSpec {
+        id: format!("t{target}"),
+        attitude: AttitudeSpec::Quaternion(attitudes[target]),
+        zero_rate_axes: Some([false, false, true]),
+        position: order
+            .iter()
+            .position(|other| *other == target)
+            .map(|at| at + 1),
+        ..TargetSpec::default()
+    });
+    ScenarioSpec {
+        spacecraft: SpacecraftSpec {
+            inertia_kg_m2: [[20.0, 0.5, 0.0], [0.5, 25.0, -0.3], [0.0, -0.3, 18.0]],
+            wheels: wheels.collect(),
+            ..SpacecraftSpec::default()
+        },
+        targets: targets.collect(),
+        ..ScenarioSpec::default()
+    }
+}
+
+#[test]
+fn bounds_on_legs_of_arrays_agree_with_tours_within_the_accuracy_of_programs() {
+    for weakest in [0.02, 1.0] {
+        let mut spec = slow_wheels([0, 1, 2, 3, 4]);
+        spec.spacecraft.wheels[0].max_torque_nm *= weakest;
+        for target in &mut spec.targets {
+            target.zero_rate_axes = None;
+            target.position = None;
+        }
+        let plan = plan_of(&spec);
+        assert_eq!(plan.optimality, Optimality::Optimal);
+        assert!(plan.warnings.is_empty(), "{weakest}: {:?}", plan.warnings);
+    }
+}
+
+#[test]
+fn tours_whose_first_motion_is_far_from_the_fastest_are_solved() {
+    for (order, stopping_s) in [([0, 2, 4, 3, 1], 601.6), ([3, 4, 2, 1, 0], 655.3)] {
+        let plan = plan_of(&slow_wheels(order));
+        assert_eq!(plan.optimality, Optimality::Optimal, "{order:?}");
+        assert!(
+            plan.total_time_s < 0.7 * stopping_s,
+            "{}",
+            plan.total_time_s
+        );
+    }
+}
+
 #[test]
 fn conditions_of_every_kind_are_met_with_momentum_and_limits() {
     for seed in 0..CONDITIONED {

@@ -16,8 +16,9 @@ use crate::tour::order::{
 };
 use std::collections::BTreeMap;
 
-/// Relative error of an NLP's optimal duration, below which a bound does not count as contradicted.
-const CONTRADICTION_RELATIVE: f64 = 1e-6;
+/// Relative accuracy of the durations of programs ([`crate::model::spec::Accuracy::Standard`]): a bound on legs and the
+/// tour of the same legs, on other intervals, may differ by it. A larger difference contradicts the bound.
+const ACCURACY: f64 = 5e-4;
 
 /// All orders, each evaluated, open or given up.
 pub(super) struct SearchTree {
@@ -390,9 +391,9 @@ impl SearchTree {
         }
     }
 
-    /// Counts a leaf whose duration is below its bound by more than the accuracy of an NLP.
+    /// Counts a leaf whose duration is below its bound by more than the accuracy of programs.
     fn check(&mut self, node: &SearchNode, duration_s: f64) {
-        if duration_s < node.bound * (1.0 - CONTRADICTION_RELATIVE) {
+        if duration_s < node.bound * (1.0 - ACCURACY) {
             self.statistics.bounds_contradicted += 1;
         }
     }

@@ -6,7 +6,9 @@
 
 use slewplan_solver::model::spec::ScenarioSpec;
 use slewplan_solver::tour::legs::LegKind;
-use slewplan_solver::tour::planner::{LegRow, Shard, StrongestBounds, leg_table, strongest_bounds};
+use slewplan_solver::tour::planner::{
+    LegRow, ProofEffort, Shard, StrongestBounds, leg_table, strongest_bounds,
+};
 use slewplan_tests::solving::{on_threads, plan_of, scenario_of};
 use slewplan_tests::suite::{LEGS_PER_SPACECRAFT, SPACECRAFT, leg};
 use slewplan_tests::{experiment_a_spec, experiment_b_spec, experiment_c_spec};
@@ -99,7 +101,9 @@ fn tour(name: &str, spec: &ScenarioSpec) {
     let StrongestBounds {
         legs: strongest,
         tour: strongest_tour,
-    } = on_threads(2, |run| strongest_bounds(&scenario_of(spec), &legs, run));
+    } = on_threads(2, |run| {
+        strongest_bounds(&scenario_of(spec), &legs, ProofEffort::Confirmed, run)
+    });
     let time = begin.elapsed().as_secs_f64();
     let share = |bound: Option<f64>| bound.map_or(f64::NAN, |bound| bound / plan.total_time_s);
     println!(
@@ -137,7 +141,9 @@ fn shares(spec: &ScenarioSpec, rows: &[LegRow]) -> Vec<Share> {
         .iter()
         .map(|row| (row.from.clone(), row.to.clone()))
         .collect();
-    let bounds = on_threads(2, |run| strongest_bounds(&scenario_of(spec), &names, run));
+    let bounds = on_threads(2, |run| {
+        strongest_bounds(&scenario_of(spec), &names, ProofEffort::Confirmed, run)
+    });
     let share = |bound: Option<f64>, row: &LegRow| Some(bound? / row.duration_s?);
     rows.iter()
         .zip(bounds.legs)

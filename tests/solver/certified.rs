@@ -7,7 +7,9 @@ use slewplan_solver::model::spec::{AttitudeEquivalence, AttitudeSpec, ScenarioSp
 use slewplan_solver::run::progress::{Observer, Progress, Stage};
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::tour::legs::LegKind;
-use slewplan_solver::tour::planner::{self, LegRow, Run, Shard, leg_table, strongest_bounds};
+use slewplan_solver::tour::planner::{
+    self, LegRow, ProofEffort, Run, Shard, leg_table, strongest_bounds,
+};
 use slewplan_tests::ordinary::conditioned;
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{on_threads, plan_of, planned, pool, scenario_of};
@@ -54,7 +56,9 @@ fn assert_strongest_bounds_hold(spec: &ScenarioSpec, plan: &Plan) {
     let legs = plan.legs.iter();
     let names: Vec<_> = legs.map(|leg| (leg.from.clone(), leg.to.clone())).collect();
     let scenario = scenario_of(spec);
-    let strongest = on_threads(2, |run| strongest_bounds(&scenario, &names, run));
+    let strongest = on_threads(2, |run| {
+        strongest_bounds(&scenario, &names, ProofEffort::Confirmed, run)
+    });
     for (leg, bound) in plan.legs.iter().zip(strongest.legs) {
         let bound = bound.map(|bound| bound.bound_s);
         assert!(bound >= leg.certified_lower_bound_s, "{bound:?} of {leg:?}");

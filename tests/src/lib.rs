@@ -4,6 +4,7 @@
 //! rigid body with three wheels on its axes, only the z component of the rate vanishing at a
 //! target); the pyramid is that of the published envelope of a square array of four wheels.
 
+pub mod extremals;
 pub mod general;
 pub mod motions;
 pub mod orders;

@@ -70,7 +70,7 @@ pub use imported::LegCheck;
 pub use leg_time_table::{LegTime, LegTimeTable};
 pub use leg_trials::{GuessNode, LegAnswer, LegTrial, LegTrials};
 pub use memory::memory_estimate;
-pub use strongest::{StrongestBound, StrongestBounds, strongest_bounds};
+pub use strongest::{ProofEffort, StrongestBound, StrongestBounds, strongest_bounds};
 
 /// What a solve needs from its surroundings.
 #[derive(Clone, Copy)]

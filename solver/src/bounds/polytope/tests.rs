@@ -1,10 +1,8 @@
 //! Boxes, random motions of other polytopes, and the properties of a least time.
 
-mod motions;
-
 use super::*;
 use crate::bounds::kinematic::RateBox;
-use motions::{extremal, vertices};
+use slewplan_tests::extremals::{extremal, vertices};
 use slewplan_tests::motions::half_spaces;
 use slewplan_tests::random::Generator;
 use std::f64::consts::PI;
@@ -91,6 +89,7 @@ fn no_extremal_is_faster_than_the_bound_on_its_turn() {
             let duration = random.between(0.05, 3.0) * slowest;
             let costate = Vector3::from(random.direction());
             let turn = extremal(&vertices, costate, duration);
+            let turn = Attitude::from_xyzw(turn.coords.into()).expect("a unit quaternion");
             let found = limited.least_time(&turn, 1e-4);
             assert!(
                 found.lower_s <= duration * (1.0 + 1e-9),

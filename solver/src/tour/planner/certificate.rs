@@ -22,7 +22,7 @@ use super::bounds_by_form::BoundsByForm;
 use super::canonical::CanonicalLeg;
 use super::places::Places;
 use super::proved_legs::ProvedLegs;
-use super::strongest::{StrongestBounds, strongest_between};
+use super::strongest::{ProofEffort, StrongestBounds, strongest_between};
 use super::tables::CertifiedLeg;
 use super::tour_bound::tour_bound;
 use super::{named_pairs, tour_pairs};
@@ -180,7 +180,7 @@ pub fn verify_certificate(
     CheckedCertificate {
         legs,
         tour: verifier.verify_tour_bound(certificate, &pairs),
-        strongest: strongest_between(&places, &between, run),
+        strongest: strongest_between(&places, &between, ProofEffort::Confirmed, run),
     }
 }
 

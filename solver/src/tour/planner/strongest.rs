@@ -47,25 +47,40 @@ pub struct StrongestBound {
     pub is_confirmed: bool,
 }
 
+/// How much is done for a bound.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ProofEffort {
+    /// Boxes and norms, proved once: some milliseconds a leg.
+    Once,
+    /// All bounds, confirmed: seconds a leg.
+    Confirmed,
+}
+
 /// The largest bounds that are proved for some legs, by the names of their ends, and for all tours.
 #[must_use]
 pub fn strongest_bounds(
     scenario: &Scenario,
     legs: &[(String, String)],
+    effort: ProofEffort,
     run: Run<'_>,
 ) -> StrongestBounds {
     let places = Places::of(scenario);
     let names = legs.iter().map(|(from, to)| [from.as_str(), to.as_str()]);
     let legs = named_pairs(&places, &tour_pairs(&places), names);
-    strongest_between(&places, &legs, run)
+    strongest_between(&places, &legs, effort, run)
 }
 
 /// The same between places; `None` where no tour has such a leg.
 pub(super) fn strongest_between(
     places: &Places<'_>,
     legs: &[Option<(Place, Place)>],
+    effort: ProofEffort,
     run: Run<'_>,
 ) -> StrongestBounds {
+    let (by_norm, strongest): (Proof, Proof) = match effort {
+        ProofEffort::Once => (once_proved, once_proved),
+        ProofEffort::Confirmed => (by_norm, strongest),
+    };
     // Forms of legs whose bounds are proved once.
     let once: Mutex<BTreeSet<String>> = Mutex::default();
     let lock = || once.lock().unwrap_or_else(PoisonError::into_inner);
@@ -97,16 +112,19 @@ pub(super) fn strongest_between(
         let Some((bound_s, order)) = found.flatten() else {
             break;
         };
+        // A stopped search knows little: the bound before it stays.
+        if run.stop.is_set() {
+            break;
+        }
         tour_s = Some(bound_s);
         let route = order.map_or_else(Vec::new, |order| places.route(&order, true));
         let on_it = route.windows(2).map(|leg| (leg[0], leg[1]));
         let fresh: Vec<_> = on_it.filter(|leg| raised.insert(*leg)).collect();
-        if fresh.is_empty() || run.stop.is_set() {
+        if fresh.is_empty() {
             break;
         }
         bounds.replace(&fresh, prove(&all, &some(&fresh), strongest));
     }
-    let tour_s = tour_s.filter(|_| !run.stop.is_set());
     let is_confirmed = |pair| form(pair).is_some_and(|leg| !lock().contains(leg.key()));
     StrongestBounds {
         legs: legs
@@ -128,6 +146,21 @@ pub(super) fn strongest_between(
 
 /// Proves a bound on a leg, and tells whether it is confirmed.
 type Proof = fn(&Places<'_>, (Place, Place), &CanonicalLeg) -> (CertifiedLeg, bool);
+
+/// The largest bound on a leg by boxes and norms, not confirmed.
+fn once_proved(places: &Places<'_>, _: (Place, Place), leg: &CanonicalLeg) -> (CertifiedLeg, bool) {
+    let boxed = certify(places, leg);
+    let Some(known_s) = boxed.lower_bound else {
+        return (boxed, true);
+    };
+    let beyond = places.certified.beyond(&leg.from, &leg.to, known_s);
+    let bound_s = beyond.map_or(known_s, |beyond| beyond.bound_s);
+    let bound = CertifiedLeg {
+        lower_bound: Some(bound_s),
+        ..boxed
+    };
+    (bound, false)
+}
 
 /// The largest bound on a leg by boxes and norms.
 fn by_norm(places: &Places<'_>, pair: (Place, Place), leg: &CanonicalLeg) -> (CertifiedLeg, bool) {
@@ -175,9 +208,8 @@ fn with_norm(
         ..boxed
     };
     if places.dynamics.has_momentum() || has_free_roll(places.scenario, pair) {
-        let beyond = places.certified.beyond(&leg.from, &leg.to, once_s);
-        let bound_s = beyond.map_or(once_s, |beyond| beyond.bound_s);
-        return (with(bound_s), false, None);
+        let (bound, is_confirmed) = once_proved(places, pair, leg);
+        return (bound, is_confirmed, None);
     }
     let confirmed_s = prove_by_box(places, pair, leg, None).ok();
     let known_s = confirmed_s.unwrap_or(once_s);

@@ -1,6 +1,5 @@
 //! Extremals of a polytope of rates, followed step by step without its level curves.
 
-use crate::model::attitude::Attitude;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use std::f64::consts::TAU;
 
@@ -9,8 +8,9 @@ const ON_BORDER: f64 = 1e-9;
 /// A switch that is nearer, rad, is the one just made.
 const JUST_MADE: f64 = 1e-9;
 
-/// The vertices of `{w : |f . w| <= 1}`: where three borders meet within all of them.
-pub(super) fn vertices(half_spaces: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+/// The vertices of `{w : |f . w| <= 1}`, rad/s: where three borders meet within all of them.
+#[must_use]
+pub fn vertices(half_spaces: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
     let borders: Vec<_> = half_spaces.iter().flat_map(|f| [*f, -f]).collect();
     let mut found: Vec<Vector3<f64>> = Vec::new();
     for i in 0..borders.len() {
@@ -32,13 +32,18 @@ pub(super) fn vertices(half_spaces: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
     found
 }
 
-/// The turn of the extremal that begins with a costate, after a duration: the rate is the vertex that maximises its
+/// The turn of the extremal that begins with a costate, after a duration, s: the rate is the vertex that maximises its
 /// product with the costate, until another one does.
-pub(super) fn extremal(
+///
+/// # Panics
+///
+/// Without vertices.
+#[must_use]
+pub fn extremal(
     vertices: &[Vector3<f64>],
     mut costate: Vector3<f64>,
     duration: f64,
-) -> Attitude {
+) -> UnitQuaternion<f64> {
     let mut turn = UnitQuaternion::identity();
     let mut left = duration;
     let product = |costate: &Vector3<f64>, at: usize| costate.dot(&vertices[at]);
@@ -60,7 +65,7 @@ pub(super) fn extremal(
         left -= time;
         at = other;
     }
-    Attitude::from_xyzw(turn.coords.into()).expect("a unit quaternion")
+    UnitQuaternion::new_normalize(turn.into_inner())
 }
 
 /// The angle after which another vertex is as good, while the costate turns back about the rate.

@@ -13,7 +13,7 @@ use slewplan_solver::tour::planner::{
 use slewplan_tests::ordinary::conditioned;
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{on_threads, plan_of, planned, pool, scenario_of};
-use slewplan_tests::{experiment_a_spec, experiment_c_spec, published_targets_spec};
+use slewplan_tests::{experiment_a_spec, experiment_c_spec, published_targets_spec, pyramid_spec};
 use std::sync::Mutex;
 
 /// Durations of legs are differences of times; bounds give the checker's tolerances away.
@@ -99,6 +99,27 @@ fn tours_with_free_components_and_signed_quaternions_keep_their_bounds() {
     signed.options.attitude_equivalence = AttitudeEquivalence::Quaternion;
     signed.targets[1].dwell_s = 30.0;
     assert_legs_keep_their_bounds(&plan_of(&signed));
+}
+
+#[test]
+fn the_long_way_to_a_quaternion_with_a_sign_is_bounded_by_its_angle() {
+    let mut spec = pyramid_spec();
+    spec.options.attitude_equivalence = AttitudeEquivalence::Quaternion;
+    let half = 20.0_f64.to_radians();
+    // 40 degrees about the first wheel's axis, but 320 the other way round.
+    let (s, c) = ((2.0_f64 / 3.0).sqrt(), (1.0_f64 / 3.0).sqrt());
+    let there = [s * half.sin(), 0.0, c * half.sin(), half.cos()];
+    spec.targets[0].attitude = AttitudeSpec::Quaternion(there.map(|component| -component));
+    let plan = plan_of(&spec);
+    assert_strongest_bounds_hold(&spec, &plan);
+    let legs = [("start".to_owned(), "turned".to_owned())];
+    let found = on_threads(1, |run| {
+        strongest_bounds(&scenario_of(&spec), &legs, ProofEffort::Once, run)
+    });
+    let bound = found.legs[0].expect("a bound").bound_s;
+    let as_rotation = plan.legs[0].certified_lower_bound_s.expect("a bound");
+    assert!(bound > 2.0 * as_rotation, "{bound}, {as_rotation}");
+    assert!(bound > 0.6 * plan.total_time_s, "{bound}");
 }
 
 #[test]

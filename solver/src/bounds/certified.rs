@@ -45,7 +45,7 @@
 //!
 //! Without limits of speed there is no box of rates and no bound. Stored momentum has boxes of its
 //! own ([`momentum`]). A turn whose quaternion has to arrive with a given sign is bounded as a
-//! rotation, which may be the shorter way round.
+//! rotation, which may be the shorter way round, and by its angle at the largest rate.
 
 mod momentum;
 mod norms;
@@ -248,10 +248,15 @@ impl CertifiedBounds {
         Some((frames[strongest.alternative].axes, certificate))
     }
 
-    /// The largest bound that norms prove on slews between two waypoints, if it exceeds the one that
-    /// [`Self::leg`] gives. Takes milliseconds. `None` with a free roll too, for which there are no such bounds,
-    /// and mostly with momentum, for which there is that of a limit of the rate's norm alone.
-    pub(crate) fn beyond(&self, from: &Waypoint, to: &Waypoint, known_s: f64) -> Option<NormBound> {
+    /// The largest bound that norms prove on slews between two waypoints that turn by an angle, rad, as far as signs
+    /// count, if it exceeds the one that [`Self::leg`] gives. Takes milliseconds. `None` with a free roll too, for
+    /// which there are no such bounds, and mostly with momentum, for which there is that of the Euclidean norm alone.
+    pub(crate) fn beyond(
+        &self,
+        [from, to]: [&Waypoint; 2],
+        angle: f64,
+        known_s: f64,
+    ) -> Option<NormBound> {
         if from.roll.is_some() || to.roll.is_some() {
             return None;
         }
@@ -259,7 +264,7 @@ impl CertifiedBounds {
         let ends = [from, to].map(|end| rate_limits(end).zip_map(&rates, rounded_up));
         let turn = from.attitude.turn_to(&to.attitude);
         let norms = self.norms_for(&ends);
-        norms.beyond(&turn, MISSED_ATTITUDE, known_s, TOLERANCE)
+        norms.beyond((&turn, angle), MISSED_ATTITUDE, known_s, TOLERANCE)
     }
 
     fn norms_for(&self, ends: &[Vector3<f64>; 2]) -> Arc<Norms> {

@@ -32,7 +32,8 @@
 //!
 //!   every axis pays for its own ramp: at rest at both ends and for long slews
 //!   `T >= V_K + sum_i b_i tau_i + (1 - B) min tau_i` with `tau_i = p_i / a_i`.
-//! * Where the norm of the rate is limited, the ball of that norm (`rate_norm`), with momentum too.
+//! * The ball of the Euclidean norm (`rate_norm`), with momentum too: where this norm of the rate is limited, and for
+//!   quaternions that have to arrive with a sign, whose turns of up to 360 degrees no other norm knows.
 
 mod norm;
 mod rate_norm;
@@ -79,7 +80,7 @@ const FACETS_OF_A_BOX: usize = 3;
 pub(crate) struct NormBound {
     /// The bound, s.
     pub(crate) bound_s: f64,
-    /// Its certificate; `None` where it follows from a limit of the Euclidean norm of the rate.
+    /// Its certificate; `None` where it follows from the Euclidean norm of the rate.
     pub(crate) certificate: Option<NormCertificate>,
 }
 
@@ -87,8 +88,8 @@ pub(crate) struct NormBound {
 #[derive(Debug)]
 pub(super) struct Norms {
     norms: Vec<Norm>,
-    /// Limits of the norm of the rate, where there is one.
-    rate_norm: Option<Trapezoid>,
+    /// Limits of the Euclidean norm of the rate.
+    rate_norm: Trapezoid,
 }
 
 impl Norms {
@@ -136,11 +137,11 @@ impl Norms {
         Self { norms, rate_norm }
     }
 
-    /// The largest bound that some norm proves for a turn whose ends are missed by an angle, rad, each, if it exceeds
-    /// one that is known, s.
+    /// The largest bound that some norm proves for a turn by an angle, rad, whose ends are missed by another one each, if
+    /// it exceeds one that is known, s.
     pub(super) fn beyond(
         &self,
-        turn: &Attitude,
+        (turn, angle): (&Attitude, f64),
         missed: f64,
         known_s: f64,
         tolerance: f64,
@@ -154,9 +155,7 @@ impl Norms {
             .filter(|(promise, _)| *promise > 1.0 + SMALL_GAIN)
             .collect();
         promising.sort_by(|one, other| other.0.total_cmp(&one.0));
-        let by_norm = self.rate_norm.map_or(0.0, |limits| {
-            rate_norm::least_duration(vector.norm() - 2.0 * missed, &limits)
-        });
+        let by_norm = rate_norm::least_duration(angle - 2.0 * missed, &self.rate_norm);
         let (mut best, mut of) = (known_s.max(by_norm), None);
         for (_, norm) in promising.into_iter().take(MAX_TRIED) {
             let raised = norm.raised(turn, missed, best, tolerance);
@@ -172,26 +171,23 @@ impl Norms {
     }
 }
 
-/// Limits of the norm of the rate; `None` where it has none of its own.
-fn rate_norm(
-    dynamics: &Dynamics,
-    frames: &[BodyFrame],
-    ends: &[Vector3<f64>; 2],
-) -> Option<Trapezoid> {
+/// Limits of the Euclidean norm of the rate.
+fn rate_norm(dynamics: &Dynamics, frames: &[BodyFrame], ends: &[Vector3<f64>; 2]) -> Trapezoid {
+    let least = |norms: &dyn Fn(&BodyFrame) -> f64| {
+        let norms = frames.iter().map(norms);
+        norms.fold(f64::INFINITY, f64::min)
+    };
     let most = dynamics.max_rate_norm * EXCEEDED_LIMITS;
-    let accelerations = frames
-        .iter()
-        .map(|frame| frame.limits.accelerations_rad_s2.norm());
     let slope = if dynamics.has_momentum() {
         f64::INFINITY
     } else {
-        accelerations.fold(f64::INFINITY, f64::min)
+        least(&|frame| frame.limits.accelerations_rad_s2.norm())
     };
-    most.is_finite().then(|| Trapezoid {
-        most,
+    Trapezoid {
+        most: most.min(least(&BodyFrame::largest_rate)),
         slope,
         ends: ends.map(|end| end.norm()),
-    })
+    }
 }
 
 /// Weights that may pay: of axes whose ramps are longer than the shortest one that counts.

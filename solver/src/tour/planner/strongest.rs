@@ -10,7 +10,7 @@
 
 use super::bounds_by_form::BoundsByForm;
 use super::canonical::CanonicalLeg;
-use super::certificate::proofs::{prove_by_box, prove_by_norm, prove_in_box};
+use super::certificate::proofs::{beyond, prove_by_box, prove_by_norm, prove_in_box};
 use super::certificate::{canonical, has_free_roll};
 use super::legs::certify;
 use super::places::Places;
@@ -153,7 +153,7 @@ fn once_proved(places: &Places<'_>, _: (Place, Place), leg: &CanonicalLeg) -> (C
     let Some(known_s) = boxed.lower_bound else {
         return (boxed, true);
     };
-    let beyond = places.certified.beyond(&leg.from, &leg.to, known_s);
+    let beyond = beyond(places, leg, known_s);
     let bound_s = beyond.map_or(known_s, |beyond| beyond.bound_s);
     let bound = CertifiedLeg {
         lower_bound: Some(bound_s),

@@ -1,6 +1,7 @@
 //! Bounds on legs without momentum, proved with outward rounding by certificates made from the scenario.
 
 use super::{Objection, premises};
+use crate::bounds::certified::NormBound;
 use crate::bounds::certify;
 use crate::bounds::polytope::certificate::NormCertificate;
 use crate::bounds::reach::SlewsInBox;
@@ -37,7 +38,7 @@ pub(in super::super) fn prove_by_norm(
     leg: &CanonicalLeg,
     known_s: f64,
 ) -> Option<(StrongestBound, Option<NormCertificate>)> {
-    let beyond = places.certified.beyond(&leg.from, &leg.to, known_s)?;
+    let beyond = beyond(places, leg, known_s)?;
     let is_confirmed = match &beyond.certificate {
         None => false,
         Some(certificate) => {
@@ -71,6 +72,17 @@ pub(in super::super) fn prove_in_box(
         None => slews,
     };
     slews.longest_excluded_s(known_s)
+}
+
+/// The largest bound by a norm, if it exceeds one that is known, s.
+pub(in super::super) fn beyond(
+    places: &Places<'_>,
+    leg: &CanonicalLeg,
+    known_s: f64,
+) -> Option<NormBound> {
+    let angle = leg.arrival.turn(&leg.from.attitude, &leg.to.attitude);
+    let ends = [&leg.from, &leg.to];
+    places.certified.beyond(ends, angle, known_s)
 }
 
 /// The places at begin and end of a canonical leg.

@@ -74,7 +74,9 @@ fn tightened_premises_of_norms_are_rejected() {
     let places = Places::of(&scenario);
     let route = [Place::Target(0), Place::Target(1)];
     let [from, to] = route.map(|place| places.waypoint(place));
-    let beyond = places.certified.beyond(&from, &to, 1.0).expect("a bound");
+    let angle = from.attitude.angle_to(&to.attitude);
+    let beyond = places.certified.beyond([&from, &to], angle, 1.0);
+    let beyond = beyond.expect("a bound");
     let good = beyond.certificate.expect("a certificate");
     assert_eq!(check_norm(&scenario, route, &good), Ok(()));
     assert_eq!(certify::verify_norm(&good), Ok(()));

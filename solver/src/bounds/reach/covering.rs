@@ -3,7 +3,7 @@
 use super::form::{Form, VectorForm, combined, difference, each, length};
 use super::meeting::Left;
 use super::profile::Profile;
-use super::tube::Tube;
+use super::tube::{DOUBLE, Tube};
 use crate::bounds::interval::Interval;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -71,31 +71,7 @@ impl<'a> Covering<'a> {
 
     /// Tries to exclude all scales in a range.
     pub(super) fn exclude(&mut self, from: f64, to: f64) -> Covered {
-        let mut open: Vec<Cell> = Vec::new();
-        let part = |number: u32| -1.0 + 2.0 * f64::from(number) / f64::from(PARTS);
-        let slices = 1;
-        for slice in (0..slices).rev() {
-            let scale = |n: u32| from + (to - from) * f64::from(n) / f64::from(slices);
-            for axis in 0..3 {
-                for sign in [-1.0, 1.0] {
-                    for (a, b) in (0..PARTS).flat_map(|a| (0..PARTS).map(move |b| (a, b))) {
-                        open.push(Cell {
-                            face: (axis, sign),
-                            low: [part(a), part(b), scale(slice)],
-                            high: [
-                                part(a + 1),
-                                part(b + 1),
-                                if slice + 1 == slices {
-                                    to
-                                } else {
-                                    scale(slice + 1)
-                                },
-                            ],
-                        });
-                    }
-                }
-            }
-        }
+        let mut open = Cell::all(from, to);
         while let Some(cell) = open.pop() {
             self.budget = self.budget.saturating_sub(1);
             if self.budget == 0 {
@@ -239,7 +215,7 @@ impl<'a> Covering<'a> {
             return None;
         }
         let both = a + b;
-        let bent = a.min(b) * (0.5 * both + 0.1014 * both * both) * (1.0 + 1e-9);
+        let bent = a.min(b) * (0.5 * both + DOUBLE * both * both) * (1.0 + 1e-9);
         let rest = (bent + self.missed) * 1.01 + 1e-10;
         let apart = difference(&forward.deviation.map(Form::of_places), &behind);
         Some(each(|i| {
@@ -261,6 +237,21 @@ fn influence(tubes: &[Tube; 2]) -> [f64; 3] {
 }
 
 impl Cell {
+    /// Cells of all costates with scales in a range.
+    fn all(from: f64, to: f64) -> Vec<Self> {
+        let part = |number: u32| -1.0 + 2.0 * f64::from(number) / f64::from(PARTS);
+        let parts = || (0..PARTS).flat_map(|a| (0..PARTS).map(move |b| (a, b)));
+        let faces = (0..3).flat_map(|axis| [-1.0, 1.0].map(|sign| (axis, sign)));
+        let cells = faces.flat_map(|face| {
+            parts().map(move |(a, b)| Self {
+                face,
+                low: [part(a), part(b), from],
+                high: [part(a + 1), part(b + 1), to],
+            })
+        });
+        cells.collect()
+    }
+
     fn side(&self, k: usize) -> Form {
         let middle = 0.5 * (self.low[k] + self.high[k]);
         let radius = (self.high[k] - middle).max(middle - self.low[k]).next_up();

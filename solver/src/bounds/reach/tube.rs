@@ -15,7 +15,7 @@ const DRIFT: f64 = 1e-14;
 const MAX_STEPS: usize = 4000;
 /// Coefficient of the double vector product in the equation of the deviation, for deviations below `pi`: at most
 /// `1 / pi^2`.
-const DOUBLE: f64 = 0.1014;
+pub(super) const DOUBLE: f64 = 0.1014;
 /// Deviation up to which this holds, rad.
 const FARTHEST: f64 = 3.0;
 

@@ -130,8 +130,7 @@ fn subsets_give_the_shortest_admitted_path_and_trees_do_not_exceed_it() {
 fn heuristic_orders_and_completions_satisfy_the_rules() {
     let mut random = SplitMix::new(9);
     let stop = StopSignal::new();
-    for seed in 0..12 {
-        let targets = if seed % 3 == 0 { 9 } else { 30 };
+    for (seed, targets) in [(0, 9), (1, 24), (2, 24)] {
         let mut model = RandomModel::new(targets, seed % 2 == 0, seed);
         model.rules = feasible_rules(targets, &mut random);
         let table = PairTable::new(&model);
@@ -147,7 +146,7 @@ fn heuristic_orders_and_completions_satisfy_the_rules() {
         assert!(order.starts_with(prefix) && model.rules.admits(&order));
         // The model panics when it is asked for an order that the rules do not admit.
         let settings = SearchSettings {
-            node_limit: Some(60),
+            node_limit: Some(20),
             ..alternatives(1)
         };
         assert!(run(&model, &settings).best.is_some());

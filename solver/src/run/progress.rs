@@ -2,6 +2,7 @@
 
 use crate::model::plan::Plan;
 use crate::run::contradiction::Contradiction;
+use std::sync::{Mutex, PoisonError};
 
 /// The stage of a solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::IntoStaticStr)]
@@ -71,4 +72,97 @@ pub struct Silent;
 
 impl Observer for Silent {
     fn progress(&self, _: Progress) {}
+}
+
+/// Passes progress on together with what earlier reports have told: a stage knows a part of it only, and stages
+/// alternate where legs are solved when a search asks for them.
+pub(crate) struct Continued<'a> {
+    observer: &'a dyn Observer,
+    told: Mutex<Option<Progress>>,
+}
+
+impl<'a> Continued<'a> {
+    /// Nothing has been told yet.
+    pub(crate) fn new(observer: &'a dyn Observer) -> Self {
+        Self {
+            observer,
+            told: Mutex::default(),
+        }
+    }
+}
+
+impl Observer for Continued<'_> {
+    fn progress(&self, progress: Progress) {
+        let now = {
+            let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+            let now = told.map_or(progress, |told| Progress {
+                incumbent_s: progress.incumbent_s.or(told.incumbent_s),
+                lower_bound_s: progress.lower_bound_s.or(told.lower_bound_s),
+                value: progress.value.or(told.value),
+                value_bound: progress.value_bound.or(told.value_bound),
+                ..progress
+            });
+            *told = Some(now);
+            now
+        };
+        self.observer.progress(now);
+    }
+
+    fn incumbent(&self, plan: &Plan) {
+        self.observer.incumbent(plan);
+    }
+
+    fn contradicted(&self, contradiction: &Contradiction) {
+        self.observer.contradicted(contradiction);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Default)]
+    struct Recorded(Mutex<Vec<Progress>>);
+
+    impl Observer for Recorded {
+        fn progress(&self, progress: Progress) {
+            self.0.lock().expect("no panic").push(progress);
+        }
+    }
+
+    #[test]
+    fn what_a_search_has_told_stays_while_legs_are_solved() {
+        let recorded = Recorded::default();
+        let continued = Continued::new(&recorded);
+        let legs = Progress {
+            stage: Stage::Legs,
+            done: 1,
+            total: Some(6),
+            incumbent_s: None,
+            lower_bound_s: None,
+            value: None,
+            value_bound: None,
+        };
+        let search = Progress {
+            stage: Stage::Search,
+            incumbent_s: Some(9.0),
+            lower_bound_s: Some(7.0),
+            ..legs
+        };
+        let better = Progress {
+            lower_bound_s: Some(8.0),
+            ..search
+        };
+        for progress in [legs, search, legs, better, legs] {
+            continued.progress(progress);
+        }
+        let told = recorded.0.into_inner().expect("no panic");
+        let known = told
+            .iter()
+            .map(|told| (told.incumbent_s, told.lower_bound_s));
+        let known: Vec<_> = known.collect();
+        let (first, then) = ((Some(9.0), Some(7.0)), (Some(9.0), Some(8.0)));
+        assert_eq!(known, [(None, None), first, first, then, then]);
+        assert_eq!(told[4].stage, Stage::Legs);
+    }
 }

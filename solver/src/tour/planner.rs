@@ -42,7 +42,7 @@ use crate::model::plan::Outcome;
 use crate::model::problem::Problem;
 use crate::model::scenario::{Scenario, cone_problems};
 use crate::run::pool::SolverPool;
-use crate::run::progress::Observer;
+use crate::run::progress::{Continued, Observer};
 use crate::run::stop::StopSignal;
 use crate::tour::legs::{LegKind, LegStore, SegmentStore};
 use crate::tour::order::{
@@ -127,6 +127,11 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     if !problems.is_empty() {
         return Outcome::Infeasible(problems);
     }
+    let observer = Continued::new(run.observer);
+    let run = Run {
+        observer: &observer,
+        ..run
+    };
     if scenario.has_clock() {
         return clock::solve_schedule(scenario, run);
     }

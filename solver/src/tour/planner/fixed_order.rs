@@ -11,6 +11,7 @@ use super::unsolved::unsolved;
 use super::{Run, feasibility_problems, limited};
 use crate::model::plan::Outcome;
 use crate::model::scenario::Scenario;
+use crate::run::progress::Continued;
 use crate::tour::order::{Place, SolvedOrder, TourEvaluation, TourModel};
 use std::time::Instant;
 
@@ -76,6 +77,11 @@ fn solve_admitted(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: R
     if scenario.has_clock() {
         return Outcome::Failed(vec![not_planned()]);
     }
+    let observer = Continued::new(run.observer);
+    let run = Run {
+        observer: &observer,
+        ..run
+    };
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);
     let route = places.route(order, true);

@@ -37,9 +37,6 @@ pub(super) struct LegSolver<'a> {
     /// By [`CanonicalLeg::key`].
     known: Mutex<HashMap<String, Arc<SolvedLeg>>>,
     certified: BoundsByForm,
-    /// Duration of the first tour and lower bound on all tours, s, when known: part of every report
-    /// of progress.
-    reported: Mutex<(Option<f64>, Option<f64>)>,
     /// Number of legs solved.
     solved: AtomicU64,
     /// Number of legs taken from the store.
@@ -58,7 +55,6 @@ impl<'a> LegSolver<'a> {
             stop,
             known: Mutex::default(),
             certified: BoundsByForm::default(),
-            reported: Mutex::default(),
             solved: AtomicU64::new(0),
             from_store: AtomicU64::new(0),
             nlp_solves: AtomicU64::new(0),
@@ -78,31 +74,20 @@ impl<'a> LegSolver<'a> {
 
     /// Reports that work has begun.
     pub(super) fn report_begin(&self) {
-        self.report_progress(0, None);
+        self.report_bounds(None, None);
     }
 
-    /// Reports the duration of a first tour and a lower bound on all tours, s, now and with all
-    /// later progress of the legs.
+    /// Reports the duration of a first tour and a lower bound on all tours, s, where they are known.
     pub(super) fn report_bounds(&self, incumbent_s: Option<f64>, lower_bound_s: Option<f64>) {
-        {
-            let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
-            *reported = (incumbent_s.or(reported.0), lower_bound_s.or(reported.1));
-        }
-        self.report_progress(0, None);
+        self.run.observer.progress(Progress {
+            incumbent_s,
+            lower_bound_s,
+            ..progress_of_legs(0, None)
+        });
     }
 
     fn report_progress(&self, done: u64, total: Option<u64>) {
-        let reported = self.reported.lock();
-        let (incumbent_s, lower_bound_s) = *reported.unwrap_or_else(PoisonError::into_inner);
-        self.run.observer.progress(Progress {
-            stage: Stage::Legs,
-            done,
-            total,
-            incumbent_s,
-            lower_bound_s,
-            value: None,
-            value_bound: None,
-        });
+        self.run.observer.progress(progress_of_legs(done, total));
     }
 
     /// Numbers of legs solved, of legs from the store, and of NLPs.
@@ -439,6 +424,18 @@ impl<'a> LegSolver<'a> {
             Arc::clone(solved)
         };
         lock(&self.known).insert(leg.key().to_owned(), kept);
+    }
+}
+
+fn progress_of_legs(done: u64, total: Option<u64>) -> Progress {
+    Progress {
+        stage: Stage::Legs,
+        done,
+        total,
+        incumbent_s: None,
+        lower_bound_s: None,
+        value: None,
+        value_bound: None,
     }
 }
 

@@ -188,16 +188,11 @@ fn spacecraft_with_targets(
         _ => slew(40, 8 * number),
     };
     let craft = &mut spec.spacecraft;
-    let rates: Vec<f64> = craft
-        .wheels
-        .iter()
-        .zip(0..)
-        .map(|(wheel, n)| {
-            let speed = wheel.max_speed_rad_s.expect("every wheel has one");
-            wheel.inertia_kg_m2 * speed / craft.inertia_kg_m2[n % 3][n % 3]
-        })
-        .collect();
-    let rate = rates.iter().copied().fold(f64::INFINITY, f64::min);
+    let rates = craft.wheels.iter().zip(0..).map(|(wheel, n)| {
+        let speed = wheel.max_speed_rad_s.expect("every wheel has one");
+        wheel.inertia_kg_m2 * speed / craft.inertia_kg_m2[n % 3][n % 3]
+    });
+    let rate = rates.fold(f64::INFINITY, f64::min);
     match class {
         Class::NormLimit => {
             craft.max_body_rate_norm_rad_s = Some(random.between(0.2, 1.5) * rate);

@@ -120,7 +120,7 @@ pub(super) fn strongest_between(
         let route = order.map_or_else(Vec::new, |order| places.route(&order, true));
         let on_it = route.windows(2).map(|leg| (leg[0], leg[1]));
         let fresh: Vec<_> = on_it.filter(|leg| raised.insert(*leg)).collect();
-        if fresh.is_empty() {
+        if fresh.is_empty() || effort == ProofEffort::Once {
             break;
         }
         bounds.replace(&fresh, prove(&all, &some(&fresh), strongest));
@@ -199,6 +199,10 @@ fn with_norm(
     pair: (Place, Place),
     leg: &CanonicalLeg,
 ) -> (CertifiedLeg, bool, Option<NormCertificate>) {
+    if places.dynamics.has_momentum() || has_free_roll(places.scenario, pair) {
+        let (bound, is_confirmed) = once_proved(places, pair, leg);
+        return (bound, is_confirmed, None);
+    }
     let boxed = certify(places, leg);
     let Some(once_s) = boxed.lower_bound else {
         return (boxed, true, None);
@@ -207,10 +211,6 @@ fn with_norm(
         lower_bound: Some(bound_s),
         ..boxed
     };
-    if places.dynamics.has_momentum() || has_free_roll(places.scenario, pair) {
-        let (bound, is_confirmed) = once_proved(places, pair, leg);
-        return (bound, is_confirmed, None);
-    }
     let confirmed_s = prove_by_box(places, pair, leg, None).ok();
     let known_s = confirmed_s.unwrap_or(once_s);
     match prove_by_norm(places, pair, leg, known_s) {

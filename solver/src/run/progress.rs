@@ -36,6 +36,19 @@ pub struct Progress {
 }
 
 impl Progress {
+    /// Steps of a stage that are done, by a stage that knows no more.
+    pub(crate) fn of_stage(stage: Stage, done: u64, total: Option<u64>) -> Self {
+        Self {
+            stage,
+            done,
+            total,
+            incumbent_s: None,
+            lower_bound_s: None,
+            value: None,
+            value_bound: None,
+        }
+    }
+
     /// The relative gap between incumbent and bound, when both are known.
     #[must_use]
     pub fn relative_gap(&self) -> Option<f64> {
@@ -134,15 +147,7 @@ mod tests {
     fn what_a_search_has_told_stays_while_legs_are_solved() {
         let recorded = Recorded::default();
         let continued = Continued::new(&recorded);
-        let legs = Progress {
-            stage: Stage::Legs,
-            done: 1,
-            total: Some(6),
-            incumbent_s: None,
-            lower_bound_s: None,
-            value: None,
-            value_bound: None,
-        };
+        let legs = Progress::of_stage(Stage::Legs, 1, Some(6));
         let search = Progress {
             stage: Stage::Search,
             incumbent_s: Some(9.0),

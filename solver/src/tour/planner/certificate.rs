@@ -291,15 +291,10 @@ impl CertificateVerifier<'_> {
     }
 
     fn report_progress(&self) {
-        self.run.observer.progress(Progress {
-            stage: Stage::Legs,
-            done: self.done.fetch_add(1, Ordering::Relaxed) + 1,
-            total: Some(self.total.load(Ordering::Relaxed)),
-            incumbent_s: None,
-            lower_bound_s: None,
-            value: None,
-            value_bound: None,
-        });
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        let total = self.total.load(Ordering::Relaxed);
+        let progress = Progress::of_stage(Stage::Legs, done, Some(total));
+        self.run.observer.progress(progress);
     }
 }
 

@@ -82,12 +82,13 @@ impl<'a> LegSolver<'a> {
         self.run.observer.progress(Progress {
             incumbent_s,
             lower_bound_s,
-            ..progress_of_legs(0, None)
+            ..Progress::of_stage(Stage::Legs, 0, None)
         });
     }
 
     fn report_progress(&self, done: u64, total: Option<u64>) {
-        self.run.observer.progress(progress_of_legs(done, total));
+        let progress = Progress::of_stage(Stage::Legs, done, total);
+        self.run.observer.progress(progress);
     }
 
     /// Numbers of legs solved, of legs from the store, and of NLPs.
@@ -424,18 +425,6 @@ impl<'a> LegSolver<'a> {
             Arc::clone(solved)
         };
         lock(&self.known).insert(leg.key().to_owned(), kept);
-    }
-}
-
-fn progress_of_legs(done: u64, total: Option<u64>) -> Progress {
-    Progress {
-        stage: Stage::Legs,
-        done,
-        total,
-        incumbent_s: None,
-        lower_bound_s: None,
-        value: None,
-        value_bound: None,
     }
 }
 

@@ -82,11 +82,11 @@
 //! Pontryagin's maximum principle is standard; the enumeration is derived above. Swing and twist:
 //! the decomposition `q = q_swing q_twist` about a body axis.
 
-pub(crate) mod bisection;
 pub mod certificate;
 pub(crate) mod drift;
 mod extremal;
 mod interior;
+pub(crate) mod inversion;
 mod levels;
 pub mod limits;
 pub mod ramps;

@@ -1,7 +1,7 @@
 //! The envelope `m_i(t; T)` of the rates of a motion, and its integral `s(T)`; both are defined in
 //! [`super::ramps`].
 
-use super::bisection::last_where;
+use super::inversion::last_below;
 use super::limits::{EndRates, SlewLimits};
 use nalgebra::Vector3;
 
@@ -73,28 +73,18 @@ impl RateEnvelope {
     /// `s(T)` for a box: the integrand is linear between kinks and crossings of the `m_i / p_i`.
     pub(crate) fn effective(&self, rates: &Vector3<f64>, duration: f64) -> f64 {
         let kinks = self.kinks(duration);
-        let mut sum = 0.0;
+        let inverse = rates.map(f64::recip);
+        let shares =
+            |at: f64| Vector3::from_fn(|i, _| self.available(i, at, duration) * inverse[i]);
+        let (mut sum, mut first) = (0.0, shares(0.0));
         for pair in kinks.windows(2) {
-            let (from, length) = (pair[0], pair[1] - pair[0]);
+            let length = pair[1] - pair[0];
             if length <= 0.0 {
                 continue;
             }
-            let shares =
-                |t: f64| Vector3::from_fn(|i, _| self.available(i, t, duration) / rates[i]);
-            let (first, last) = (shares(from), shares(pair[1]));
-            let mut cuts = [0.0, 1.0, 1.0, 1.0, 1.0];
-            for (cut, (i, j)) in cuts[1..4].iter_mut().zip([(0, 1), (1, 2), (2, 0)]) {
-                let (before, after) = (first[i] - first[j], last[i] - last[j]);
-                if before * after < 0.0 {
-                    *cut = before / (before - after);
-                }
-            }
-            cuts[..4].sort_by(f64::total_cmp);
-            let value = |cut: f64| (first + (last - first) * cut).max();
-            sum += cuts
-                .windows(2)
-                .map(|cut| 0.5 * (value(cut[0]) + value(cut[1])) * (cut[1] - cut[0]) * length)
-                .sum::<f64>();
+            let last = shares(pair[1]);
+            sum += length * mean_of_largest(&first, &last);
+            first = last;
         }
         sum
     }
@@ -113,10 +103,31 @@ impl RateEnvelope {
         slope: f64,
         from: f64,
     ) -> f64 {
-        let short =
-            |duration: f64| self.effective(rates, duration) + slope * (duration - from) < least;
+        let covered = |duration: f64| self.effective(rates, duration) + slope * (duration - from);
         // A lower bound on the duration: all rates at their limits.
         let step = least * rates.component_div(&self.limits.rates_rad_s).min();
-        last_where(from, step, short)
+        last_below(from, step, least, covered)
     }
+}
+
+/// The mean of the largest component of a vector that changes linearly between two.
+fn mean_of_largest(first: &Vector3<f64>, last: &Vector3<f64>) -> f64 {
+    let mut cuts = [0.0, 1.0, 1.0, 1.0, 1.0];
+    let mut crossings = 0;
+    for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+        let (before, after) = (first[i] - first[j], last[i] - last[j]);
+        if before * after < 0.0 {
+            crossings += 1;
+            cuts[crossings] = before / (before - after);
+        }
+    }
+    if crossings == 0 {
+        return 0.5 * (first.max() + last.max());
+    }
+    cuts[1..=crossings].sort_by(f64::total_cmp);
+    let value = |cut: f64| (first + (last - first) * cut).max();
+    let parts = cuts.windows(2);
+    parts
+        .map(|cut| 0.5 * (value(cut[0]) + value(cut[1])) * (cut[1] - cut[0]))
+        .sum()
 }

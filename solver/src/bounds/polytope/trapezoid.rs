@@ -36,6 +36,14 @@ impl Trapezoid {
         if duration.is_infinite() || self.slope.is_infinite() {
             return self.most;
         }
+        self.integral(duration) / duration
+    }
+
+    /// Its integral over a finite duration.
+    pub(crate) fn integral(&self, duration: f64) -> f64 {
+        if self.slope.is_infinite() {
+            return self.most * duration;
+        }
         let mut times = [0.0, duration, 0.0, 0.0, 0.0];
         times[2..].copy_from_slice(&self.kinks(duration));
         times.sort_by(f64::total_cmp);
@@ -43,6 +51,6 @@ impl Trapezoid {
             let ends = [pair[0], pair[1]].map(|time| self.at(time, duration));
             0.5 * (ends[0] + ends[1]) * (pair[1] - pair[0])
         };
-        times.windows(2).map(area).sum::<f64>() / duration
+        times.windows(2).map(area).sum()
     }
 }

@@ -1,7 +1,7 @@
 //! One norm: its polytope, and how much of it a slew can cover in a time.
 
-use crate::bounds::kinematic::bisection::last_where;
 use crate::bounds::kinematic::certificate::CertifiedTurn;
+use crate::bounds::kinematic::inversion::last_below;
 use crate::bounds::kinematic::rate_envelope::RateEnvelope;
 use crate::bounds::polytope::RatePolytope;
 use crate::bounds::polytope::certificate::{
@@ -68,7 +68,7 @@ impl Norm {
         if least <= self.covered(known_s) {
             return known_s;
         }
-        last_where(known_s, least, |duration| self.covered(duration) < least)
+        last_below(known_s, least, least, |duration| self.covered(duration))
     }
 
     /// The certificate of a bound, s, that this norm gives.

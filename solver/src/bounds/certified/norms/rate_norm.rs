@@ -4,7 +4,7 @@
 //! duration covers is `int min(limit, b + a t, e + a (T - t)) dt` with the largest norms of the acceleration and of
 //! the rates at both ends.
 
-use crate::bounds::kinematic::bisection::last_where;
+use crate::bounds::kinematic::inversion::last_below;
 use crate::bounds::polytope::trapezoid::Trapezoid;
 
 /// The longest duration, s, in which a norm within such limits cannot cover an angle, rad.
@@ -12,6 +12,7 @@ pub(super) fn least_duration(angle: f64, limits: &Trapezoid) -> f64 {
     if angle <= 0.0 {
         return 0.0;
     }
-    let short = |duration: f64| limits.mean(duration) * duration < angle;
-    last_where(0.0, angle / limits.most, short)
+    last_below(0.0, angle / limits.most, angle, |duration| {
+        limits.integral(duration)
+    })
 }

@@ -2,7 +2,6 @@
 
 use super::leg_query::Pair;
 use super::number::Number;
-use crate::store::leg_key;
 use serde::{Deserialize, Serialize};
 use slewplan_solver::tour::planner::{self, LegTime};
 use std::fmt;
@@ -143,7 +142,7 @@ impl From<LegTime> for LegRow {
             certified_lower_bound_s: time.certified_lower_bound_s,
             status: Some(time.status.to_owned()),
             source: source(time.duration_s, time.status, time.from_store),
-            key: time.identity.as_deref().map(leg_key),
+            key: time.key,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::database::Transaction;
 use super::database::statement::sql;
-use super::legs::{SOLVER_VERSION, keys_of};
+use super::legs::{SOLVER_VERSION, json_of, keys_of};
 use super::{Store, StoreError};
 use slewplan_solver::bounds;
 use slewplan_solver::tour::legs::StoredTime;
@@ -22,14 +22,16 @@ row! {
     }
 }
 
-impl From<&TimeRow> for StoredTime {
-    fn from(row: &TimeRow) -> Self {
-        let is_bound_current = row.bound_version == Some(bounds::VERSION.into());
-        Self {
-            duration_s: row.duration_s,
-            certified_lower_bound_s: row.certified_lower_bound_s.filter(|_| is_bound_current),
+impl TimeRow {
+    /// The time of the leg with this key.
+    fn time(&self, key: String) -> StoredTime {
+        let is_bound_current = self.bound_version == Some(bounds::VERSION.into());
+        StoredTime {
+            key,
+            duration_s: self.duration_s,
+            certified_lower_bound_s: self.certified_lower_bound_s.filter(|_| is_bound_current),
             is_bound_current,
-            solve_time_s: row.solve_time_s,
+            solve_time_s: self.solve_time_s,
         }
     }
 }
@@ -53,22 +55,23 @@ impl LegSnapshot {
     ) -> Result<Vec<Option<StoredTime>>, StoreError> {
         let mut times = vec![None; identities.len()];
         for (batch, times) in identities.chunks(BATCH).zip(times.chunks_mut(BATCH)) {
-            for row in self.rows(batch).await? {
-                let place = usize::try_from(row.position).ok();
-                if let Some(time) = place.and_then(|place| times.get_mut(place)) {
-                    *time = Some(StoredTime::from(&row));
+            let mut keys = keys_of(batch);
+            for row in self.rows(&keys).await? {
+                let place = usize::try_from(row.position).unwrap_or(usize::MAX);
+                if let (Some(time), Some(key)) = (times.get_mut(place), keys.get_mut(place)) {
+                    *time = Some(row.time(std::mem::take(key)));
                 }
             }
         }
         Ok(times)
     }
 
-    async fn rows(&mut self, identities: &[&str]) -> Result<Vec<TimeRow>, StoreError> {
+    async fn rows(&mut self, keys: &[String]) -> Result<Vec<TimeRow>, StoreError> {
         sql(
             "SELECT place AS position, duration_s, certified_lower_bound_s, bound_version, \
              solve_time_s FROM {asked} {with_leg_times} WHERE solver_version = $2",
         )
-        .bind(keys_of(identities))
+        .bind(json_of(keys))
         .bind(SOLVER_VERSION)
         .fetch_all(&mut self.0)
         .await

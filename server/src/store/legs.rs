@@ -132,13 +132,14 @@ pub(crate) fn key(identity: &str) -> String {
     crate::base::digest::hex(identity.as_bytes())
 }
 
-/// The keys of legs as the text of a JSON array.
-pub(super) fn keys_of(identities: &[&str]) -> String {
-    let keys: Vec<_> = identities
-        .iter()
-        .map(|identity| format!("\"{}\"", key(identity)))
-        .collect();
-    format!("[{}]", keys.join(","))
+/// The keys of legs.
+pub(super) fn keys_of(identities: &[&str]) -> Vec<String> {
+    identities.iter().map(|identity| key(identity)).collect()
+}
+
+/// Keys as the text of a JSON array.
+pub(super) fn json_of(keys: &[String]) -> String {
+    serde_json::to_string(keys).expect("texts are plain data")
 }
 
 impl Store {
@@ -154,7 +155,7 @@ impl Store {
              JOIN (SELECT key AS spacecraft_key, document FROM leg_spacecraft) AS known \
              ON spacecraft_key = spacecraft WHERE solver_version = $2"
         ))
-        .bind(keys_of(identities))
+        .bind(json_of(&keys_of(identities)))
         .bind(SOLVER_VERSION)
         .fetch_all(&self.database)
         .await?;

@@ -52,8 +52,10 @@ pub struct StoredLeg {
 }
 
 /// The time of a stored leg.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct StoredTime {
+    /// What the store calls the leg: its identity, or a digest of it.
+    pub key: String,
     /// Minimum time, s.
     pub duration_s: f64,
     /// No slew with the conditions at the two ends takes less, s, proved; `None` where nothing is.
@@ -62,17 +64,6 @@ pub struct StoredTime {
     pub is_bound_current: bool,
     /// Wall-clock time of the solve with all its starts, s.
     pub solve_time_s: f64,
-}
-
-impl From<&StoredLeg> for StoredTime {
-    fn from(leg: &StoredLeg) -> Self {
-        Self {
-            duration_s: leg.duration_s,
-            certified_lower_bound_s: leg.certified_lower_bound_s,
-            is_bound_current: leg.certified_lower_bound_s.is_some(),
-            solve_time_s: leg.solve_time_s,
-        }
-    }
 }
 
 /// Remembers legs by their identity.
@@ -99,7 +90,16 @@ pub trait LegStore: Sync {
     /// The times of the legs of many identities, in their order; `None` for legs that are not known.
     /// Their motions are not read.
     fn times(&self, identities: &[&str]) -> Vec<Option<StoredTime>> {
-        let time = |identity: &&str| self.get(identity).map(|leg| StoredTime::from(&leg));
+        let time = |identity: &&str| {
+            let leg = self.get(identity)?;
+            Some(StoredTime {
+                key: (*identity).to_owned(),
+                duration_s: leg.duration_s,
+                certified_lower_bound_s: leg.certified_lower_bound_s,
+                is_bound_current: leg.certified_lower_bound_s.is_some(),
+                solve_time_s: leg.solve_time_s,
+            })
+        };
         identities.iter().map(time).collect()
     }
 

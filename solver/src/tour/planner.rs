@@ -271,7 +271,7 @@ pub fn leg_table(
 /// Canonical text of the spacecraft of a scenario, which its stored legs have.
 #[must_use]
 pub fn described_spacecraft(scenario: &Scenario) -> String {
-    Places::of(scenario).described
+    Places::of(scenario).head.spacecraft().to_owned()
 }
 
 /// Problems of a valid scenario that are found without solving it: for example a required rest

@@ -14,20 +14,21 @@ use crate::model::waypoint::{Waypoint, WheelCondition};
 use nalgebra::{DVector, Vector3};
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
+use std::ops::Range;
 
 /// Version of the canonical form and of the numerics behind it. It is part of the identity: legs
 /// stored by another version are not found.
 const VERSION: &str = "leg-10";
+/// Length of the key of most legs, bytes.
+const KEY_LENGTH: usize = 512;
 
 /// A leg in the frame in which it begins at the identity attitude.
 #[derive(Debug, Clone)]
 pub(super) struct CanonicalLeg {
     /// Canonical text of everything that the solution depends on.
     pub(super) identity: String,
-    /// The part of the identity that describes the spacecraft.
-    pub(super) spacecraft: String,
-    /// Where the part of the identity begins that legs of one scenario do not have in common.
-    own: usize,
+    /// Where it describes the spacecraft. What the legs of one scenario do not have in common follows.
+    described: Range<usize>,
     /// The spacecraft with the momentum in this frame.
     pub(super) dynamics: Dynamics,
     /// The begin, at the identity attitude.
@@ -72,25 +73,70 @@ impl CanonicalLeg {
     }
 
     fn within(dynamics: &Dynamics, places: &Places<'_>, [from, to]: [&Waypoint; 2]) -> Self {
-        let forth = Self::directed(dynamics, places, [from, to], false);
-        if !forth.reversible {
-            return forth;
+        let reversible = places.reversible([from, to]);
+        let mut flown = DirectedLeg::of(dynamics, places, [from, to]);
+        let mut mirrored = false;
+        if reversible {
+            let back = DirectedLeg::of(dynamics, places, [to, from]);
+            mirrored = back.key < flown.key;
+            if mirrored {
+                flown = back;
+            }
         }
-        let back = Self::directed(dynamics, places, [to, from], true);
-        if back.identity < forth.identity {
-            back
-        } else {
-            forth
+        let head = &places.head;
+        Self {
+            identity: [&*head.text, &*flown.key].concat(),
+            described: head.spacecraft..head.text.len(),
+            dynamics: flown.dynamics,
+            from: flown.from,
+            to: flown.to,
+            mirrored,
+            reversible,
+            arrival: places.arrival,
+            null: places.null.clone(),
+            resolution: places.resolution,
+            free: None,
         }
     }
 
-    fn directed(
-        dynamics: &Dynamics,
-        places: &Places<'_>,
-        [from, to]: [&Waypoint; 2],
-        mirrored: bool,
-    ) -> Self {
-        let reversible = places.reversible([from, to]);
+    /// The part of the identity that describes the spacecraft.
+    pub(super) fn spacecraft(&self) -> &str {
+        &self.identity[self.described.clone()]
+    }
+
+    /// What tells it from the other legs of its scenario: a third of the identity.
+    pub(super) fn key(&self) -> &str {
+        &self.identity[self.described.end..]
+    }
+
+    /// The problem to solve; initial guesses come from the extremals of its spacecraft.
+    pub(super) fn problem<'a>(&'a self, extremals: &'a KinematicExtremals) -> LegProblem<'a> {
+        LegProblem {
+            dynamics: &self.dynamics,
+            from: &self.from,
+            to: &self.to,
+            arrival: self.arrival,
+            null: &self.null,
+            extremals,
+            resolution: self.resolution,
+        }
+    }
+}
+
+/// The canonical form of the leg between two waypoints: with cones or without them.
+pub(super) type CanonicalForm = fn(&Places<'_>, &Waypoint, &Waypoint) -> CanonicalLeg;
+
+/// A leg in one of the directions in which it may be flown.
+struct DirectedLeg {
+    /// The part of the identity that legs of one scenario do not have in common.
+    key: String,
+    dynamics: Dynamics,
+    from: Waypoint,
+    to: Waypoint,
+}
+
+impl DirectedLeg {
+    fn of(dynamics: &Dynamics, places: &Places<'_>, [from, to]: [&Waypoint; 2]) -> Self {
         let mut turn = rounded_attitude(&from.attitude.turn_to(&to.attitude));
         if places.arrival == Arrival::Rotation {
             turn = upper_hemisphere(&turn);
@@ -105,50 +151,43 @@ impl CanonicalLeg {
         dynamics.cones.dedup();
         let from = settled(&dynamics, Attitude::identity(), from);
         let to = settled(&dynamics, turn, to);
-        let spacecraft = places.described.clone();
-        let mut identity = format!("{VERSION};{:?};{:?};", places.resolution, places.arrival);
-        identity.push_str(&spacecraft);
-        let own = identity.len();
+        let mut key = String::with_capacity(KEY_LENGTH);
         let momentum = dynamics.momentum;
         for part in [momentum.as_slice(), &turn.xyzw(), places.null.as_slice()] {
-            push_numbers(&mut identity, part);
+            push_numbers(&mut key, part);
         }
         for place in [&from, &to] {
-            describe_conditions(&mut identity, place);
+            describe_conditions(&mut key, place);
         }
-        describe_cones(&mut identity, &dynamics.cones);
+        describe_cones(&mut key, &dynamics.cones);
         Self {
-            identity,
-            spacecraft,
-            own,
+            key,
             dynamics,
             from,
             to,
-            mirrored,
-            reversible,
-            arrival: places.arrival,
-            null: places.null.clone(),
-            resolution: places.resolution,
-            free: None,
         }
     }
+}
 
-    /// What tells it from the other legs of its scenario: a third of the identity.
-    pub(super) fn key(&self) -> &str {
-        &self.identity[self.own..]
+/// How the identities of all legs of a scenario begin.
+#[derive(Debug)]
+pub(super) struct IdentityHead {
+    text: String,
+    /// Where it describes the spacecraft, up to its end.
+    spacecraft: usize,
+}
+
+impl IdentityHead {
+    pub(super) fn new(resolution: Resolution, arrival: Arrival, dynamics: &Dynamics) -> Self {
+        let mut text = format!("{VERSION};{resolution:?};{arrival:?};");
+        let spacecraft = text.len();
+        describe_spacecraft(&mut text, dynamics);
+        Self { text, spacecraft }
     }
 
-    /// The problem to solve; initial guesses come from the extremals of its spacecraft.
-    pub(super) fn problem<'a>(&'a self, extremals: &'a KinematicExtremals) -> LegProblem<'a> {
-        LegProblem {
-            dynamics: &self.dynamics,
-            from: &self.from,
-            to: &self.to,
-            arrival: self.arrival,
-            null: &self.null,
-            extremals,
-            resolution: self.resolution,
-        }
+    /// Canonical text of the spacecraft.
+    pub(super) fn spacecraft(&self) -> &str {
+        &self.text[self.spacecraft..]
     }
 }
 
@@ -218,23 +257,21 @@ fn push_numbers(text: &mut String, numbers: &[f64]) {
 }
 
 /// Canonical text of a spacecraft; its momentum is not part of it, because the frame of a leg turns it.
-pub(super) fn describe_spacecraft(dynamics: &Dynamics) -> String {
-    let mut text = String::new();
-    push_numbers(&mut text, dynamics.inertia.as_slice());
+fn describe_spacecraft(text: &mut String, dynamics: &Dynamics) {
+    push_numbers(text, dynamics.inertia.as_slice());
     for wheel in &dynamics.actuators {
-        push_numbers(&mut text, wheel.axis.as_slice());
+        push_numbers(text, wheel.axis.as_slice());
         let numbers = [
             wheel.inertia,
             wheel.min_torque,
             wheel.max_torque,
             wheel.max_speed,
         ];
-        push_numbers(&mut text, &numbers);
+        push_numbers(text, &numbers);
     }
-    push_numbers(&mut text, dynamics.locked_momentum.as_slice());
-    push_numbers(&mut text, dynamics.max_rate.as_slice());
-    push_numbers(&mut text, &[dynamics.max_rate_norm]);
-    text
+    push_numbers(text, dynamics.locked_momentum.as_slice());
+    push_numbers(text, dynamics.max_rate.as_slice());
+    push_numbers(text, &[dynamics.max_rate_norm]);
 }
 
 const CONE: &str = "cone ";

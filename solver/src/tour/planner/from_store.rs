@@ -13,7 +13,7 @@ use nalgebra::DVector;
 pub(super) fn stored_leg(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> StoredLeg {
     let profile = &solved.solution.profile;
     StoredLeg {
-        spacecraft: leg.spacecraft.clone(),
+        spacecraft: leg.spacecraft().to_owned(),
         kind,
         turn_xyzw: leg.to.attitude.xyzw(),
         body_momentum_nms: leg.dynamics.momentum.into(),

@@ -1,7 +1,7 @@
 //! Times of many legs of one scenario, part by part: known ones from the store without their
 //! motions, missing ones solved.
 
-use super::canonical::CanonicalLeg;
+use super::canonical::{CanonicalForm, CanonicalLeg};
 use super::legs::{LegSolver, certify};
 use super::places::Places;
 use super::tables::CertifiedLeg;
@@ -29,12 +29,12 @@ pub struct LegTime {
     pub status: &'static str,
     /// Whether the store knew it.
     pub from_store: bool,
-    /// The identity under which it is stored, when it is.
-    pub identity: Option<String>,
+    /// The key under which it is stored, when it is.
+    pub key: Option<String>,
 }
 
 impl LegTime {
-    fn stored(time: StoredTime, identity: String) -> Self {
+    fn stored(time: StoredTime) -> Self {
         Self {
             duration_s: Some(time.duration_s),
             certified_lower_bound_s: time.certified_lower_bound_s,
@@ -42,7 +42,7 @@ impl LegTime {
             // No others are stored.
             status: NlpStatus::Converged.into_str(),
             from_store: true,
-            identity: Some(identity),
+            key: Some(time.key),
         }
     }
 }
@@ -79,7 +79,7 @@ impl<'a> LegTimeTable<'a> {
     /// Canonical text of the spacecraft of the legs.
     #[must_use]
     pub fn spacecraft(&self) -> &str {
-        &self.places.described
+        self.places.head.spacecraft()
     }
 
     /// Whether it was asked to stop, or its time is up.
@@ -95,15 +95,15 @@ impl<'a> LegTimeTable<'a> {
         if self.kind == LegKind::Certified {
             return vec![None; pairs.len()];
         }
-        let solver = self.solver();
         if self.places.with_cones.cones.is_empty() {
-            return self.stored(&solver.all_canonical(self.kind, pairs));
+            return self.stored(pairs, CanonicalLeg::of);
         }
-        let mut times = self.stored(&solver.all_around_cones(self.kind, pairs));
+        let mut times = self.stored(pairs, CanonicalLeg::around_cones);
         // Where none is stored with cones, the leg without them may be clear of all of them.
         let open = (0..pairs.len()).filter(|i| times[*i].is_none());
         let (open, asked): (Vec<usize>, Vec<_>) = open.map(|i| (i, pairs[i])).unzip();
-        let free = self.stored(&solver.all_canonical(self.kind, &asked));
+        let free = self.stored(&asked, CanonicalLeg::of);
+        let solver = self.solver();
         let found: Vec<_> = asked.into_iter().zip(free).collect();
         let clear = self.run.pool.map(&found, |(pair, time)| {
             let time = time.as_ref()?;
@@ -162,7 +162,7 @@ impl<'a> LegTimeTable<'a> {
                 solve_time_s: leg.solve_time,
                 status: leg_status(&self.places, [*from, *to], &leg.solution),
                 from_store: leg.from_store,
-                identity: None,
+                key: None,
             })
         })
     }
@@ -172,10 +172,10 @@ impl<'a> LegTimeTable<'a> {
             return Vec::new();
         }
         let mut legs = self.verified(pairs);
-        // What was solved is stored by now, under an identity that the solved leg does not tell.
+        // What was solved is stored by now, under a key that the solved leg does not tell.
         for (leg, stored) in legs.iter_mut().zip(self.known(pairs)) {
             if let Some(leg) = leg {
-                leg.identity = stored.and_then(|stored| stored.identity);
+                leg.key = stored.and_then(|stored| stored.key);
             }
         }
         legs
@@ -189,32 +189,37 @@ impl<'a> LegTimeTable<'a> {
             solve_time_s: leg.solve_time,
             status: leg.lower_bound.map_or("none", |_| "proved"),
             from_store: false,
-            identity: None,
+            key: None,
         };
         legs.into_iter().map(|leg| leg.map(time)).collect()
     }
 
-    /// The stored times of canonical legs, in one look-up.
-    fn stored(&self, legs: &[Option<CanonicalLeg>]) -> Vec<Option<LegTime>> {
-        let identities: Vec<&str> = legs.iter().flatten().map(|l| l.identity.as_str()).collect();
-        let mut times = self.run.legs.times(&identities).into_iter();
-        let mut known = |leg: &CanonicalLeg| {
-            let time = self.with_bound(leg, times.next().flatten()?);
-            Some(LegTime::stored(time, leg.identity.clone()))
+    /// The stored times of the legs between pairs of places in their canonical form, in one look-up.
+    fn stored(&self, pairs: &[(Place, Place)], form: CanonicalForm) -> Vec<Option<LegTime>> {
+        let solver = self.solver();
+        let identities = solver.identities(self.kind, pairs, form);
+        let asked: Vec<&str> = identities.iter().flatten().map(String::as_str).collect();
+        let mut times = self.run.legs.times(&asked).into_iter();
+        let mut known = |pair: &(Place, Place), identity: &str| {
+            let mut time = times.next().flatten()?;
+            if !time.is_bound_current {
+                let leg = solver.canonical(self.kind, *pair, form);
+                time.certified_lower_bound_s = certify(&self.places, &leg).lower_bound;
+            }
+            Some(LegTime::stored(self.consistent(identity, time)))
         };
-        legs.iter().map(|leg| known(leg.as_ref()?)).collect()
+        let legs = pairs.iter().zip(&identities);
+        legs.map(|(pair, identity)| known(pair, identity.as_ref()?))
+            .collect()
     }
 
-    /// A stored time with a bound of this version that does not contradict it.
-    fn with_bound(&self, leg: &CanonicalLeg, mut time: StoredTime) -> StoredTime {
-        if !time.is_bound_current {
-            time.certified_lower_bound_s = certify(&self.places, leg).lower_bound;
-        }
+    /// A stored time without a bound that contradicts it.
+    fn consistent(&self, identity: &str, mut time: StoredTime) -> StoredTime {
         if let Some(bound_s) = time.certified_lower_bound_s
             && refutes(time.duration_s, bound_s)
         {
             self.run.observer.contradicted(&Contradiction::Leg {
-                identity: leg.identity.clone(),
+                identity: identity.to_owned(),
                 bound_s,
                 duration_s: time.duration_s,
             });

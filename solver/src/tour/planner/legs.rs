@@ -8,7 +8,7 @@ mod stopping;
 
 use super::Run;
 use super::bounds_by_form::BoundsByForm;
-use super::canonical::{CanonicalLeg, missing_from};
+use super::canonical::{CanonicalForm, CanonicalLeg, missing_from};
 use super::from_store::{leg_from_store, stored_leg};
 use super::legs_ahead::{LegsAhead, offer};
 use super::places::Places;
@@ -172,7 +172,11 @@ impl<'a> LegSolver<'a> {
 
     /// The leg of a kind between two places, solved if it is not known.
     pub(super) fn leg(&self, kind: LegKind, from: Place, to: Place) -> LegSolution {
-        let free = self.known_or_solved(kind, from, &self.canonical(kind, from, to));
+        let free = self.known_or_solved(
+            kind,
+            from,
+            &self.canonical(kind, (from, to), CanonicalLeg::of),
+        );
         self.around_cones(kind, (from, to), &free)
             .map_or(free, |around| self.known_or_solved(kind, from, &around))
     }
@@ -229,9 +233,15 @@ impl<'a> LegSolver<'a> {
         self.certified.of(&canonical, self.run.pool, |_| (), bound)
     }
 
-    fn canonical(&self, kind: LegKind, from: Place, to: Place) -> CanonicalLeg {
+    /// The leg of a kind between two places in a canonical form.
+    pub(super) fn canonical(
+        &self,
+        kind: LegKind,
+        (from, to): (Place, Place),
+        form: CanonicalForm,
+    ) -> CanonicalLeg {
         let [from, to] = [from, to].map(|place| end_of(self.places, kind, place));
-        CanonicalLeg::of(self.places, &from, &to)
+        form(self.places, &from, &to)
     }
 
     /// The canonical legs of many pairs; `None` for pairs not reached before the stop signal.
@@ -240,28 +250,27 @@ impl<'a> LegSolver<'a> {
         kind: LegKind,
         pairs: &[(Place, Place)],
     ) -> Vec<Option<CanonicalLeg>> {
-        self.run.pool.map(pairs, |(from, to)| {
-            (!self.is_abandoned()).then(|| self.canonical(kind, *from, *to))
+        self.run.pool.map_short(pairs.to_vec(), |(from, to)| {
+            (!self.is_abandoned()).then(|| self.canonical(kind, (from, to), CanonicalLeg::of))
         })
     }
 
-    /// The same with the cones that the scenario enforces, whether or not the legs without them are
-    /// clear.
-    pub(super) fn all_around_cones(
+    /// Their identities alone, without the cones that the scenario enforces or with them, whether or not the legs
+    /// without them are clear.
+    pub(super) fn identities(
         &self,
         kind: LegKind,
         pairs: &[(Place, Place)],
-    ) -> Vec<Option<CanonicalLeg>> {
-        self.run.pool.map(pairs, |(from, to)| {
-            let ends = [from, to].map(|place| end_of(self.places, kind, *place));
-            (!self.is_abandoned())
-                .then(|| CanonicalLeg::around_cones(self.places, &ends[0], &ends[1]))
+        form: CanonicalForm,
+    ) -> Vec<Option<String>> {
+        self.run.pool.map_short(pairs.to_vec(), |pair| {
+            (!self.is_abandoned()).then(|| self.canonical(kind, pair, form).identity)
         })
     }
 
     /// Whether the leg without cones is known, and clear of all that the scenario enforces.
     pub(super) fn has_clear_leg(&self, kind: LegKind, (from, to): (Place, Place)) -> bool {
-        let canonical = self.canonical(kind, from, to);
+        let canonical = self.canonical(kind, (from, to), CanonicalLeg::of);
         let stored = self.load(&canonical).map(Arc::new);
         let leg = stored.map(|leg| self.placed(from, leg, canonical.mirrored));
         leg.is_some_and(|leg| is_clear(&self.places.with_cones, &leg.profile))

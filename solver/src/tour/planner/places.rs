@@ -1,6 +1,6 @@
 //! The places of a scenario (start, targets and end) as waypoints of legs.
 
-use super::canonical::describe_spacecraft;
+use super::canonical::IdentityHead;
 use crate::bounds::certified::CertifiedBounds;
 use crate::leg::solve::arrival::Arrival;
 use crate::leg::solve::extremal::KinematicExtremals;
@@ -29,8 +29,8 @@ pub(super) struct Places<'a> {
     pub(super) dynamics: Dynamics,
     /// The same with the cones that hold along the whole flight.
     pub(super) with_cones: Dynamics,
-    /// Canonical text of the spacecraft, the same in the frames of all legs.
-    pub(super) described: String,
+    /// How the identities of all legs begin.
+    pub(super) head: IdentityHead,
     /// Which quaternion signs count as arrived.
     pub(super) arrival: Arrival,
     /// Null-space momentum of the wheels at the start, N m s; rest-to-rest legs hold it at both
@@ -70,6 +70,11 @@ impl<'a> Places<'a> {
         let rolls = targets
             .map(|target| scenario.clear_rolls(target.roll.as_ref(), &target.attitude, true));
         let end = scenario.end();
+        let resolution = Resolution::of(scenario.options().accuracy, &dynamics);
+        let arrival = match scenario.options().attitude_equivalence {
+            AttitudeEquivalence::Rotation => Arrival::Rotation,
+            AttitudeEquivalence::Quaternion => Arrival::Quaternion,
+        };
         Self {
             // Rounding errors of a null-space component that vanishes are set to zero.
             null: dynamics.null_component(&wheels).map(|h| rounded(h, scale)),
@@ -78,12 +83,9 @@ impl<'a> Places<'a> {
             rolls: rolls.collect(),
             end_rolls: end
                 .and_then(|end| scenario.clear_rolls(end.roll.as_ref(), &end.attitude, false)),
-            resolution: Resolution::of(scenario.options().accuracy, &dynamics),
-            arrival: match scenario.options().attitude_equivalence {
-                AttitudeEquivalence::Rotation => Arrival::Rotation,
-                AttitudeEquivalence::Quaternion => Arrival::Quaternion,
-            },
-            described: describe_spacecraft(&dynamics),
+            head: IdentityHead::new(resolution, arrival, &dynamics),
+            resolution,
+            arrival,
             with_cones: dynamics.with_cones(forbidden_always(scenario.cones())),
             dynamics,
             scenario,

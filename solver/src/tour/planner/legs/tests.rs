@@ -36,7 +36,7 @@ const ENDS: [Place; 2] = [Place::Start, Place::Target(0)];
 fn a_bound_above_the_duration_of_a_solved_leg_is_reported_and_dropped() {
     for (bound_s, is_false) in [(10.0, false), (1e4, true)] {
         let reported = contradictions(|legs| {
-            let leg = legs.canonical(LegKind::RestToRest, ENDS[0], ENDS[1]);
+            let leg = legs.canonical(LegKind::RestToRest, (ENDS[0], ENDS[1]), CanonicalLeg::of);
             let known = CertifiedLeg {
                 lower_bound: Some(bound_s),
                 solve_time: 0.0,
@@ -135,7 +135,7 @@ fn a_stopped_solve_has_no_leg_rather_than_one_through_a_cone() {
     let (counter, stop) = (Counter::default(), StopSignal::new());
     with_leg_solver(&scenario, &counter, &NoStore, &stop, |legs, _| {
         let kind = LegKind::LowerBound;
-        let free = legs.canonical(kind, ENDS[0], ENDS[1]);
+        let free = legs.canonical(kind, (ENDS[0], ENDS[1]), CanonicalLeg::of);
         let free = legs.known_or_solved(kind, ENDS[0], &free);
         assert!(free.duration().is_some() && !is_clear(&legs.places.with_cones, &free.profile));
         stop.cancel();

@@ -3,7 +3,7 @@
 //! A key has 256 random bits, so that its plain SHA-256 can be stored: a slow hash protects secrets
 //! that can be guessed, which these cannot.
 
-use crate::base::digest::{self, hexadecimal};
+use crate::base::digest;
 use std::fmt::{self, Display};
 use std::str::FromStr;
 
@@ -95,8 +95,8 @@ impl FreshKey {
         let mut id = [0; ID_BYTES];
         getrandom::fill(&mut id)?;
         Ok(Self {
-            id: hexadecimal(&id),
-            secret: format!("{PREFIX}{}", hexadecimal(&bytes)),
+            id: hex::encode(id),
+            secret: format!("{PREFIX}{}", hex::encode(bytes)),
         })
     }
 

@@ -1,21 +1,10 @@
-//! SHA-256 digests and hexadecimal text.
+//! SHA-256 digests.
 
 use sha2::{Digest, Sha256};
-use std::fmt::Write;
 
 /// SHA-256 as lower-case hexadecimal digits.
 pub(crate) fn hex(content: &[u8]) -> String {
-    hexadecimal(&Sha256::digest(content))
-}
-
-/// Bytes as lower-case hexadecimal digits.
-pub(crate) fn hexadecimal(bytes: &[u8]) -> String {
-    let mut text = String::with_capacity(2 * bytes.len());
-    for byte in bytes {
-        // Writing into a text cannot fail.
-        let _ = write!(text, "{byte:02x}");
-    }
-    text
+    hex::encode(Sha256::digest(content))
 }
 
 #[cfg(test)]

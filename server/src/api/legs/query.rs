@@ -20,12 +20,14 @@ use slewplan_solver::tour::legs::{LegKind, LegStore, NoStore};
 use slewplan_solver::tour::planner::{LegTimeTable, Run};
 use std::io::{self, Write};
 use std::sync::Arc;
+use std::sync::mpsc::sync_channel;
+use std::thread;
 use tokio::runtime::Handle;
 
 /// Maximum number of legs that a query solves: the full matrix of 32 attitudes.
 pub(in crate::api) const MAX_PAIRS: usize = 1000;
 /// Number of legs that are worked out and written together.
-const PART: usize = 8192;
+const PART: usize = 2048;
 
 /// Query leg times
 ///
@@ -159,7 +161,7 @@ async fn streamed(
     ))
 }
 
-/// Works out the legs of a query part by part, and writes them.
+/// Works out the legs of a query part by part, and writes each while the next one is worked out.
 fn write<W: Write + Send>(
     query: &LegQuery,
     run: Run<'_>,
@@ -173,18 +175,31 @@ fn write<W: Write + Send>(
         named: false,
     };
     let mut writer = TableWriter::begin(form, head, output)?;
-    for first in (0..query.pairs.len()).step_by(PART) {
-        let pairs = query.pairs.part(first, PART);
-        let places: Vec<_> = pairs.iter().map(leg_query::Pair::places).collect();
-        let times = if query.compute {
-            table.solved(&places)
-        } else {
-            table.known(&places)
-        };
-        let rows = times.into_iter().zip(pairs);
-        let rows =
-            rows.map(|(time, pair)| time.map_or(LegRow::MISSING, LegRow::from).between(pair));
-        writer.rows(&rows.collect::<Vec<_>>())?;
-    }
-    writer.finish()
+    let parts = (0..query.pairs.len()).step_by(PART);
+    let parts = parts.map(|first| query.pairs.part(first, PART));
+    thread::scope(|scope| {
+        let (worked_out, received) = sync_channel(0);
+        let table = &table;
+        scope.spawn(move || {
+            for pairs in parts {
+                let places: Vec<_> = pairs.iter().map(leg_query::Pair::places).collect();
+                let times = if query.compute {
+                    table.solved(&places)
+                } else {
+                    table.known(&places)
+                };
+                // Not received any more when it cannot be written.
+                if worked_out.send((times, pairs)).is_err() {
+                    return;
+                }
+            }
+        });
+        for (times, pairs) in received {
+            let rows = times.into_iter().zip(pairs);
+            let rows =
+                rows.map(|(time, pair)| time.map_or(LegRow::MISSING, LegRow::from).between(pair));
+            writer.rows(&rows.collect::<Vec<_>>())?;
+        }
+        writer.finish()
+    })
 }

@@ -30,6 +30,9 @@ const _: () = assert!(
     "the embedded SQLite can corrupt its write-ahead log"
 );
 const READERS: u32 = 4;
+/// Rows that a connection has read ahead of who asked for them: with few, both threads wait for each other over and
+/// over again.
+const ROW_BUFFER: usize = 1024;
 const BUSY_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// An open file.
@@ -87,6 +90,7 @@ impl SqliteDatabase {
             // Acknowledged writes survive a loss of power, not only the end of the process.
             .synchronous(SqliteSynchronous::Full)
             .busy_timeout(BUSY_TIMEOUT)
+            .row_buffer_size(ROW_BUFFER)
             .foreign_keys(true)
             .pragma("temp_store", "memory")
             .pragma("trusted_schema", "off")

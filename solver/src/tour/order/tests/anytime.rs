@@ -325,7 +325,7 @@ fn reported_incumbents_never_rise_and_bounds_never_fall() {
 fn searches_over_many_targets_have_an_order_and_a_bound_at_any_node_limit() {
     let mut bounds = Vec::new();
     for limit in [0, 60] {
-        let model = RandomModel::new(24, true, 17);
+        let model = RandomModel::new(21, true, 17);
         let settings = SearchSettings {
             node_limit: Some(limit),
             ..alternatives(1)
@@ -334,7 +334,7 @@ fn searches_over_many_targets_have_an_order_and_a_bound_at_any_node_limit() {
         let best = result.best.expect("a first order");
         let mut targets = best.order.clone();
         targets.sort_unstable();
-        assert!(targets.into_iter().eq(0..24));
+        assert!(targets.into_iter().eq(0..21));
         assert!(result.lower_bound_s > 0.0 && result.lower_bound_s <= best.duration_s);
         assert_eq!(result.end, SearchEnd::NodeLimit);
         bounds.push(result.lower_bound_s);

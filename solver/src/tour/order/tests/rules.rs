@@ -130,7 +130,7 @@ fn subsets_give_the_shortest_admitted_path_and_trees_do_not_exceed_it() {
 fn heuristic_orders_and_completions_satisfy_the_rules() {
     let mut random = SplitMix::new(9);
     let stop = StopSignal::new();
-    for (seed, targets) in [(0, 9), (1, 24), (2, 24)] {
+    for (seed, targets) in [(0, 9), (1, 9), (2, 21)] {
         let mut model = RandomModel::new(targets, seed % 2 == 0, seed);
         model.rules = feasible_rules(targets, &mut random);
         let table = PairTable::new(&model);

@@ -44,6 +44,11 @@
 //! neighbour of `i` if that is a target, else to that of `i` itself; to exactly one target in
 //! either case.
 //!
+//! What neighbouring targets choose has to agree, too: with joint multipliers `w_i(j, h)`, added to the cost
+//! of `j` if target `i` is its neighbour and `h` lies beyond `i`, and subtracted from the cost of `i` if
+//! target `j` and `h` are its neighbours. Without them `j` passes `i` on the way from an `h` that `i` does
+//! not choose beside `j`, and its `Z_j` is the excess over an `X_i` that nobody pays.
+//!
 //! Then let every target choose its cheapest two neighbours and places beyond them independently,
 //! and let the edges, less the multipliers, be chosen as a minimum spanning tree with two outer
 //! edges. The tour is feasible for both choices, so the sum of their minima is a lower bound for

@@ -40,6 +40,8 @@ const BATCH_PER_TARGET: usize = 4;
 const MIN_RELATIVE_GAIN: f64 = 1e-3;
 
 /// Number of targets from which the steps of an ascent are divided among workers.
+const SHARED_FROM: usize = 30;
+/// Number of targets from which an ascent after a first one begins near the best multipliers.
 const MANY_TARGETS: usize = 60;
 
 /// Targets along the side of a square of edges.
@@ -51,7 +53,7 @@ pub struct AscentEffort {
     /// Largest number of triples to ask for, each in both directions.
     pub triples: usize,
     /// Largest number of paths of five places, and of triples in them, to ask for in the second
-    /// ascent. With 0 there is no second ascent, and the outer multipliers stay as they are.
+    /// ascent. With 0 there is no second ascent, and the outer and joint multipliers stay as they are.
     pub fives: usize,
     /// Whether there is a second ascent even if the first one reached its limit of triples and gained by
     /// them.
@@ -259,7 +261,7 @@ impl<'a> Ascent<'a> {
 
     /// Both relaxed choices for the current multipliers.
     fn choose(&mut self, pool: &SolverPool) -> RelaxedChoices {
-        let pool = (self.part.targets.len() >= MANY_TARGETS).then_some(pool);
+        let pool = (self.part.targets.len() >= SHARED_FROM).then_some(pool);
         self.triple_bounds.rank(pool);
         let triple_bounds = &*self.triple_bounds;
         let targets = self.part.targets.len();
@@ -352,7 +354,8 @@ impl<'a> Ascent<'a> {
     }
 
     /// Takes a step along a subgradient of the bound: a multiplier rises where a target chooses a
-    /// neighbour that the tree does not, and falls in the opposite case. The subgradient in a
+    /// neighbour that the tree does not, or a place beyond its neighbour that this neighbour does not, and
+    /// falls in the opposite case. The subgradient in a
     /// potential is two minus the degree of the target in the tree.
     fn advance(&mut self, choices: &RelaxedChoices) {
         let targets = self.part.targets.len();
@@ -363,6 +366,15 @@ impl<'a> Ascent<'a> {
             }
             for [of, place] in choice.beyond {
                 self.heading.add_outer(of, place, 1.0);
+                if of != via {
+                    self.heading.add_joint([of, via, place], 1.0);
+                }
+            }
+            let [a, b] = choice.ends;
+            for [neighbour, beyond] in [[a, b], [b, a]] {
+                if neighbour < targets {
+                    self.heading.add_joint([via, neighbour, beyond], -1.0);
+                }
             }
             self.potential_heading[via] = MOMENTUM * self.potential_heading[via] + 2.0;
         }
@@ -375,7 +387,7 @@ impl<'a> Ascent<'a> {
                 }
             }
         }
-        // In the first ascent the outer multipliers stay as they are.
+        // In the first ascent the outer and joint multipliers stay as they are.
         if self.width == Width::Triples {
             self.heading.stay_outside();
         }

@@ -1,6 +1,7 @@
 //! The cheapest neighbours of each target: one of the two relaxed choices of the decomposition.
 
 use super::TripleBounds;
+use super::multipliers::JointMultipliers;
 use crate::run::pool::SolverPool;
 
 /// The part of a tour that a bound is for: from a place through some targets to the end.
@@ -20,7 +21,7 @@ pub(super) struct Part<'a> {
 pub(super) struct NeighbourChoice {
     /// The two neighbours.
     pub(super) ends: [usize; 2],
-    /// The outer multipliers in the cost: of which target, and for which place beyond it.
+    /// The outer and joint multipliers in the cost: of which target, and for which place beyond it.
     pub(super) beyond: [[usize; 2]; 2],
     pub(super) cost: f64,
 }
@@ -66,8 +67,11 @@ impl TripleBounds {
         far.rank(pool, |of, place| multipliers.outer(of, place));
         let least: Vec<f64> = (0..targets).map(|of| far.least(of)).collect();
         near.rank(pool, |via, place| {
-            let of = if place < targets { place } else { via };
-            multipliers.near(via, place) + least[of]
+            if place >= targets {
+                return multipliers.near(via, place) + least[via];
+            }
+            let joint = multipliers.joint(place, via).least - multipliers.joint(via, place).most;
+            multipliers.near(via, place) + least[place] + joint
         });
     }
 
@@ -75,7 +79,7 @@ impl TripleBounds {
     /// sum of their multipliers and of the cost of passing the target between them.
     ///
     /// The minimum is exact although most pairs are not evaluated. Pairs are enumerated in the
-    /// order of a lower bound: their inner multipliers plus the least outer ones (the cost of
+    /// order of a lower bound: their inner multipliers plus the least outer and joint ones (the cost of
     /// passing is not negative). Once this bound reaches the best cost, no later pair can be
     /// cheaper.
     pub(super) fn choice(&self, part: &Part<'_>, via: usize) -> NeighbourChoice {
@@ -125,26 +129,44 @@ impl TripleBounds {
     ) {
         let [one, other] = ends;
         let coupling_gaps = &self.coupling_gaps;
-        let passing = self
-            .legs
-            .passing(coupling_gaps, part.entry, [one, via, other]);
-        let near = self.multipliers.near(via, one) + self.multipliers.near(via, other) + passing;
+        let ways = self.legs.ways(coupling_gaps, part.entry, [one, via, other]);
+        let passing = ways[0].min(ways[1]);
+        // An end of the part has no choice of its own that would have to agree.
+        let joint = |neighbour: usize| {
+            if part.is_outer(neighbour) {
+                return [JointMultipliers::NONE; 2];
+            }
+            [[via, neighbour], [neighbour, via]].map(|[of, seen]| self.multipliers.joint(of, seen))
+        };
+        let [[own_one, beyond_one], [own_other, beyond_other]] = [one, other].map(joint);
+        let near = self.multipliers.near(via, one) + self.multipliers.near(via, other) + passing
+            - own_one.of(other)
+            - own_other.of(one);
         let truncated = part.is_outer(one) || part.is_outer(other);
         for (first, first_s) in self.beyond(part, via, one, other) {
+            let joint_s = beyond_one.of(first[1]);
             for (rank, (last, last_s)) in self.beyond(part, via, other, one).enumerate() {
-                let mut cost = near + first_s + last_s;
-                if cost >= best.cost {
-                    if rank == 0 {
-                        return;
-                    }
+                // Both lists are sorted by the outer multipliers alone.
+                let least = near + first_s + last_s + beyond_other.least;
+                if rank == 0 && least + beyond_one.least >= best.cost {
+                    return;
+                }
+                if least + joint_s >= best.cost {
                     break;
+                }
+                let mut cost = near + first_s + last_s + joint_s + beyond_other.of(last[1]);
+                if cost >= best.cost {
+                    continue;
                 }
                 if !truncated {
                     if first[1] == last[1] {
                         continue;
                     }
                     let path = [first[1], one, via, other, last[1]];
-                    cost += self.legs.passing_five(coupling_gaps, part.entry, path) - passing;
+                    cost += self
+                        .legs
+                        .passing_five(coupling_gaps, part.entry, path, ways)
+                        - passing;
                 }
                 if cost < best.cost {
                     *best = NeighbourChoice {
@@ -211,16 +233,36 @@ mod tests {
                 continue;
             }
             let near = multipliers.near(via, one) + multipliers.near(via, other);
+            let ways = legs.ways(&triple_bounds.coupling_gaps, part.entry, [one, via, other]);
             for [of, first] in sides(one, other) {
                 for [to, last] in sides(other, one) {
-                    let outer = multipliers.outer(of, first) + multipliers.outer(to, last);
+                    let joint = |of: usize, beyond: usize| {
+                        if of == via {
+                            0.0
+                        } else {
+                            multipliers.joint(of, via).of(beyond)
+                        }
+                    };
+                    let own = |neighbour: usize, beyond: usize| {
+                        if part.is_outer(neighbour) {
+                            0.0
+                        } else {
+                            multipliers.joint(via, neighbour).of(beyond)
+                        }
+                    };
+                    let outer = multipliers.outer(of, first)
+                        + multipliers.outer(to, last)
+                        + joint(of, first)
+                        + joint(to, last)
+                        - own(one, other)
+                        - own(other, one);
                     let passing = if of == via || to == via {
-                        legs.passing(&triple_bounds.coupling_gaps, part.entry, [one, via, other])
+                        ways[0].min(ways[1])
                     } else if first == last {
                         f64::INFINITY
                     } else {
                         let path = [first, one, via, other, last];
-                        legs.passing_five(&triple_bounds.coupling_gaps, part.entry, path)
+                        legs.passing_five(&triple_bounds.coupling_gaps, part.entry, path, ways)
                     };
                     least = least.min(near + outer + passing);
                 }

@@ -115,7 +115,7 @@ pub(super) struct CouplingGaps {
     couples: Vec<bool>,
     triples: KnownTriples,
     /// Excess of five places over their four pair bounds, s.
-    fives: HashMap<[usize; 5], f64>,
+    fives: HashMap<[usize; 5], f64, FixedState>,
     estimates: GapEstimates,
     /// Estimated delays of both legs of the triples whose gap is known, s: the gap, or what solved
     /// tours say.
@@ -132,7 +132,7 @@ impl CouplingGaps {
             symmetric: model.is_symmetric(),
             couples: (0..targets).map(|via| model.couples(via)).collect(),
             triples: KnownTriples::new(targets),
-            fives: HashMap::new(),
+            fives: HashMap::default(),
             estimates: GapEstimates::new(model, table),
             delays: Delays::new(targets),
         }

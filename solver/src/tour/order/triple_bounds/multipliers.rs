@@ -1,9 +1,9 @@
-//! Inner and outer multipliers of the decomposition.
+//! Inner, outer and joint multipliers of the decomposition.
 
 use foldhash::fast::FixedState;
 use std::collections::HashMap;
 
-/// Inner and outer multipliers, s: one row for each target, with a value for each place.
+/// The multipliers, s: of the inner and outer ones a row for each target, with a value for each place.
 #[derive(Debug, Clone)]
 pub(super) struct Multipliers {
     places: usize,
@@ -11,6 +11,51 @@ pub(super) struct Multipliers {
     pub(super) near: Vec<f64>,
     /// Outer multipliers: cost for a neighbour of the target when the place lies beyond the target.
     pub(super) outer: Vec<f64>,
+    /// Joint multipliers, most of which are zero, by target and neighbour.
+    joint: HashMap<usize, JointMultipliers, FixedState>,
+}
+
+/// Cost for one neighbour of a target when a place lies beyond the target, s.
+#[derive(Debug, Clone, Default)]
+pub(super) struct JointMultipliers {
+    /// By place, sorted.
+    values: Vec<(u32, f64)>,
+    /// The least of them, or zero.
+    pub(super) least: f64,
+    /// The largest of them, or zero.
+    pub(super) most: f64,
+}
+
+impl JointMultipliers {
+    /// All zero.
+    pub(super) const NONE: &Self = &Self {
+        values: Vec::new(),
+        least: 0.0,
+        most: 0.0,
+    };
+
+    /// That for a place.
+    pub(super) fn of(&self, place: usize) -> f64 {
+        self.position(place).map_or(0.0, |at| self.values[at].1)
+    }
+
+    fn position(&self, place: usize) -> Result<usize, usize> {
+        self.values
+            .binary_search_by_key(&place, |entry| entry.0 as usize)
+    }
+
+    fn add(&mut self, place: usize, change: f64) {
+        match self.position(place) {
+            Ok(at) => self.values[at].1 += change,
+            Err(at) => {
+                let place = u32::try_from(place).unwrap_or(u32::MAX);
+                self.values.insert(at, (place, change));
+            }
+        }
+        let values = self.values.iter().map(|entry| entry.1);
+        self.least = values.clone().fold(0.0, f64::min);
+        self.most = values.fold(0.0, f64::max);
+    }
 }
 
 impl Multipliers {
@@ -21,6 +66,7 @@ impl Multipliers {
             places,
             near: vec![0.0; targets * places],
             outer: vec![0.0; targets * places],
+            joint: HashMap::default(),
         }
     }
 
@@ -45,6 +91,12 @@ impl Multipliers {
         self.outer[target * self.places + place]
     }
 
+    /// The joint multipliers `w_i(j, h)` of a target `i` for its neighbour `j`, by the place `h` beyond.
+    pub(super) fn joint(&self, target: usize, neighbour: usize) -> &JointMultipliers {
+        let known = self.joint.get(&(target * self.places + neighbour));
+        known.unwrap_or(JointMultipliers::NONE)
+    }
+
     /// Sum of the target's two multipliers for a place, which is subtracted from the edge between
     /// them, s.
     pub(super) fn taken(&self, target: usize, place: usize) -> f64 {
@@ -61,6 +113,11 @@ impl Multipliers {
                 values[at] += factor * change;
             }
         }
+        for (&at, change) in &changes.joint {
+            let (pair, beyond) = (at / self.places, at % self.places);
+            let joint = self.joint.entry(pair).or_default();
+            joint.add(beyond, factor * change);
+        }
     }
 }
 
@@ -73,6 +130,7 @@ pub(super) struct Heading {
     places: usize,
     near: HashMap<usize, f64, FixedState>,
     outer: HashMap<usize, f64, FixedState>,
+    joint: HashMap<usize, f64, FixedState>,
 }
 
 impl Heading {
@@ -82,12 +140,13 @@ impl Heading {
             places: targets + 2,
             near: HashMap::default(),
             outer: HashMap::default(),
+            joint: HashMap::default(),
         }
     }
 
     /// Multiplies all values by a factor.
     pub(super) fn scale(&mut self, factor: f64) {
-        for values in [&mut self.near, &mut self.outer] {
+        for values in [&mut self.near, &mut self.outer, &mut self.joint] {
             values.retain(|_, value| {
                 *value *= factor;
                 value.abs() > NEGLIGIBLE
@@ -95,9 +154,16 @@ impl Heading {
         }
     }
 
-    /// Makes all values of outer multipliers zero.
+    /// Makes all values of outer and joint multipliers zero.
     pub(super) fn stay_outside(&mut self) {
         self.outer.clear();
+        self.joint.clear();
+    }
+
+    /// Adds to the value of a joint multiplier.
+    pub(super) fn add_joint(&mut self, [target, neighbour, beyond]: [usize; 3], change: f64) {
+        let at = (target * self.places + neighbour) * self.places + beyond;
+        *self.joint.entry(at).or_default() += change;
     }
 
     /// Adds to the value of an inner multiplier.

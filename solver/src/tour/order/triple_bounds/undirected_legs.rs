@@ -88,38 +88,35 @@ impl UndirectedLegs {
         self.edges[a * (self.entry_offsets.len() + 2) + b]
     }
 
-    /// Cost of passing a target between two places beyond the two edges, s: half the slacks of the
-    /// legs and half the coupling gap. The path comes from `entry`: a leg out of it is its own
-    /// edge, and no leg leads into it. The lesser of the possible directions, and infinite when
-    /// none is possible.
-    pub(super) fn passing(
+    /// Cost of passing a target between two places, one way and the other, beyond the two edges, s: half the
+    /// slacks of the legs and half the coupling gap. The path comes from `entry`: a leg out of it is its own
+    /// edge, and no leg leads into it. Infinite for a direction that is not possible.
+    pub(super) fn ways(
         &self,
         coupling_gaps: &CouplingGaps,
         entry: usize,
-        path: [usize; 3],
-    ) -> f64 {
-        let [a, via, b] = path;
-        let forth = self.directed(coupling_gaps, entry, [a, via, b]);
-        forth.min(self.directed(coupling_gaps, entry, [b, via, a]))
+        [a, via, b]: [usize; 3],
+    ) -> [f64; 2] {
+        [[a, via, b], [b, via, a]].map(|path| self.directed(coupling_gaps, entry, path))
     }
 
-    /// The same for a target with two places before and after it, plus a quarter of the coupling
-    /// gap of all five places.
+    /// The lesser of the two for a target with two places before and after it, plus a quarter of the coupling
+    /// gap of all five places in this direction.
     pub(super) fn passing_five(
         &self,
         coupling_gaps: &CouplingGaps,
         entry: usize,
         path: [usize; 5],
+        ways: [f64; 2],
     ) -> f64 {
-        let directed = |path: [usize; 5]| {
-            let [first, from, via, to, last] = path;
-            if first == self.table.end() || last == entry {
+        let directed = |path: [usize; 5], way: f64| {
+            if path[0] == self.table.end() || path[4] == entry || way.is_infinite() {
                 return f64::INFINITY;
             }
-            self.directed(coupling_gaps, entry, [from, via, to]) + 0.25 * coupling_gaps.five(path)
+            way + 0.25 * coupling_gaps.five(path)
         };
         let [a, b, c, d, e] = path;
-        directed(path).min(directed([e, d, c, b, a]))
+        directed(path, ways[0]).min(directed([e, d, c, b, a], ways[1]))
     }
 
     fn directed(&self, coupling_gaps: &CouplingGaps, entry: usize, path: [usize; 3]) -> f64 {

@@ -148,11 +148,11 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
     }
 
     fn consider(&mut self, step: Move, choice: &mut BestMove) {
-        let change = self.path.change(step);
+        let Some(change) = self.path.change_below(choice.change, step) else {
+            return;
+        };
         let admits = self.admits;
-        if change < choice.change
-            && admits.is_none_or(|admits| self.path.preview(step, |order| admits(order)))
-        {
+        if admits.is_none_or(|admits| self.path.preview(step, |order| admits(order))) {
             choice.change = change;
             choice.step = Some(step);
         }

@@ -20,11 +20,17 @@ impl Neighbours {
         let mut nearest = vec![0; count * width];
         for &place in places {
             let mut others: Vec<usize> = places.iter().copied().filter(|&p| p != place).collect();
-            others.sort_by(|&a, &b| {
-                let distance = |other| legs.edge(place, other);
-                distance(a).total_cmp(&distance(b)).then(a.cmp(&b))
-            });
-            nearest[place * width..][..width].copy_from_slice(&others[..width]);
+            let distance = |other| legs.edge(place, other);
+            let nearer = |a: &usize, b: &usize| {
+                let order = distance(*a).total_cmp(&distance(*b));
+                order.then(a.cmp(b))
+            };
+            if width < others.len() {
+                others.select_nth_unstable_by(width, nearer);
+                others.truncate(width);
+            }
+            others.sort_by(nearer);
+            nearest[place * width..][..width].copy_from_slice(&others);
         }
         Self { width, nearest }
     }

@@ -45,20 +45,26 @@ pub(super) struct OrderPath<'a, C> {
     places: Vec<usize>,
     /// Position of every place.
     positions: Vec<usize>,
+    /// Coupling at each position, s.
+    couplings: Vec<f64>,
     /// Whether reversing a segment changes the cost of its inside.
     directed: bool,
-    /// For each position the excess cost of all legs up to it in reverse, s; empty unless directed.
-    leg_skews: Vec<f64>,
-    /// For each position the excess cost of all couplings up to it in reverse, s; empty unless
-    /// directed.
-    coupling_skews: Vec<f64>,
+    /// For each position the excess cost in reverse of the leg to it and of its coupling, s; empty unless
+    /// directed. Legs and couplings at the outer places are never reversed and have none.
+    skews: Vec<[f64; 2]>,
+    /// Sums of the skews up to each position, s.
+    skew_sums: Vec<[f64; 2]>,
 }
 
-/// A running sum of costs along some segments.
-struct Walk {
+/// The joints with which segments are put together.
+struct Joints {
     before: usize,
     at: usize,
-    sum: f64,
+    /// Sum of the legs, s.
+    legs_s: f64,
+    /// The couplings, each as the places before, at and after it: at most six.
+    couplings: [[usize; 3]; 6],
+    count: usize,
 }
 
 impl<'a, C: OrderCost> OrderPath<'a, C> {
@@ -66,19 +72,19 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
     pub(super) fn new(cost: &'a C, from: usize, order: &[usize]) -> Self {
         let legs = ReducedLegs::new(cost, from, order);
         let end = cost.targets() + 1;
+        let places = [&[from], order, &[end]].concat();
+        let directed = !(legs.are_symmetric() && cost.couplings_are_symmetric());
+        let skews = vec![[0.0; 2]; if directed { places.len() } else { 0 }];
         let mut path = Self {
-            directed: !(legs.are_symmetric() && cost.couplings_are_symmetric()),
             cost,
             legs,
-            places: [&[from], order, &[end]].concat(),
             positions: vec![NOWHERE; end + 1],
-            leg_skews: Vec::new(),
-            coupling_skews: Vec::new(),
+            couplings: vec![0.0; places.len()],
+            directed,
+            skew_sums: skews.clone(),
+            skews,
+            places,
         };
-        if path.directed {
-            path.leg_skews = vec![0.0; path.places.len()];
-            path.coupling_skews = vec![0.0; path.places.len()];
-        }
         path.update(0..=path.places.len() - 1);
         path
     }
@@ -112,7 +118,7 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
         self.places.get(position).copied().unwrap_or(NOWHERE)
     }
 
-    fn coupling(&self, from: usize, via: usize, to: usize) -> f64 {
+    fn coupling(&self, [from, via, to]: [usize; 3]) -> f64 {
         if from == NOWHERE || to == NOWHERE {
             0.0
         } else {
@@ -120,27 +126,44 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
         }
     }
 
-    /// Coupling at a position, s.
-    fn coupling_at(&self, position: usize) -> f64 {
-        let before = self.place(position.wrapping_sub(1));
-        self.coupling(before, self.places[position], self.place(position + 1))
+    /// Cost of the leg after a position, s.
+    fn leg_after(&self, position: usize) -> f64 {
+        self.legs
+            .leg(self.places[position], self.places[position + 1])
     }
 
     /// Cost of the joint after a position: the leg and the couplings at both its ends, s.
     pub(super) fn joint(&self, position: usize) -> f64 {
-        self.legs
-            .leg(self.places[position], self.places[position + 1])
-            + self.coupling_at(position)
-            + self.coupling_at(position + 1)
+        self.leg_after(position) + self.couplings[position] + self.couplings[position + 1]
     }
 
     /// Change of the cost by a move, s.
     pub(super) fn change(&self, step: Move) -> f64 {
+        let (change, joints) = self.change_without_couplings(step);
+        change + joints.couplings().map(|c| self.coupling(c)).sum::<f64>()
+    }
+
+    /// The same if it is below a limit. Most moves are not, already without the couplings that they add,
+    /// and these take longest to look up.
+    pub(super) fn change_below(&self, limit: f64, step: Move) -> Option<f64> {
+        let (mut change, joints) = self.change_without_couplings(step);
+        for coupling in joints.couplings() {
+            if change >= limit {
+                return None;
+            }
+            change += self.coupling(coupling);
+        }
+        (change < limit).then_some(change)
+    }
+
+    /// Change of the cost by a move but for the couplings at its new joints, s, and these joints.
+    fn change_without_couplings(&self, step: Move) -> (f64, Joints) {
         match step {
             Move::Reverse(first, last) => {
-                let range = (first, last);
-                self.joint_costs(range, [(last, first)]) - self.joint_costs(range, [range])
-                    + self.reversal_change((first, last))
+                let joints = self.joints((first, last), [(last, first)]);
+                let removed = self.joints_after([first - 1, last]);
+                let inside = self.reversal_change((first, last));
+                (joints.legs_s - removed + inside, joints)
             }
             Move::Exchange {
                 first,
@@ -149,7 +172,6 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
                 reverse_first,
                 reverse_second,
             } => {
-                let range = (first, last);
                 let pieces = [(first, middle), (middle + 1, last)];
                 let turned =
                     |piece: SegmentEnds, turn| if turn { (piece.1, piece.0) } else { piece };
@@ -164,41 +186,53 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
                     turned(pieces[1], reverse_second),
                     turned(pieces[0], reverse_first),
                 ];
-                self.joint_costs(range, after) - self.joint_costs(range, pieces)
-                    + inside(pieces[0], reverse_first)
-                    + inside(pieces[1], reverse_second)
+                let joints = self.joints((first, last), after);
+                let removed = self.joints_after([first - 1, middle, last]);
+                let inside = inside(pieces[0], reverse_first) + inside(pieces[1], reverse_second);
+                (joints.legs_s - removed + inside, joints)
             }
         }
     }
 
-    /// Cost of the joints when these segments replace the places at a range of positions, s. The
-    /// legs and couplings inside the segments are not part of it.
-    fn joint_costs<const N: usize>(&self, range: (usize, usize), pieces: [SegmentEnds; N]) -> f64 {
-        let mut walk = Walk {
+    /// Cost of the joints after some ascending positions, s: their legs, and the couplings at their ends.
+    fn joints_after<const N: usize>(&self, positions: [usize; N]) -> f64 {
+        let mut sum = 0.0;
+        let mut counted = 0;
+        for position in positions {
+            sum += self.leg_after(position);
+            for end in position.max(counted)..=position + 1 {
+                sum += self.couplings[end];
+            }
+            counted = position + 2;
+        }
+        sum
+    }
+
+    /// The joints when these segments replace the places at a range of positions. The legs and couplings
+    /// inside the segments are not part of them.
+    fn joints<const N: usize>(&self, range: (usize, usize), pieces: [SegmentEnds; N]) -> Joints {
+        let mut joints = Joints {
             before: self.place(range.0.wrapping_sub(2)),
             at: self.places[range.0 - 1],
-            sum: 0.0,
+            legs_s: 0.0,
+            couplings: [[NOWHERE; 3]; 6],
+            count: 0,
         };
         for (enter, leave) in pieces {
-            self.step(&mut walk, self.places[enter]);
+            joints.add_leg(&self.legs, self.places[enter]);
             if enter != leave {
                 // The couplings at the two ends of a segment belong to its joints.
                 let forth = enter < leave;
                 let second = if forth { enter + 1 } else { enter - 1 };
                 let penultimate = if forth { leave - 1 } else { leave + 1 };
-                walk.sum += self.coupling(walk.before, walk.at, self.places[second]);
-                walk.before = self.places[penultimate];
-                walk.at = self.places[leave];
+                joints.add_coupling(self.places[second]);
+                joints.before = self.places[penultimate];
+                joints.at = self.places[leave];
             }
         }
-        self.step(&mut walk, self.places[range.1 + 1]);
-        walk.sum + self.coupling(walk.before, walk.at, self.place(range.1 + 2))
-    }
-
-    fn step(&self, walk: &mut Walk, to: usize) {
-        walk.sum += self.legs.leg(walk.at, to) + self.coupling(walk.before, walk.at, to);
-        walk.before = walk.at;
-        walk.at = to;
+        joints.add_leg(&self.legs, self.places[range.1 + 1]);
+        joints.add_coupling(self.place(range.1 + 2));
+        joints
     }
 
     /// Change of the cost inside a segment when it is reversed, s.
@@ -206,8 +240,8 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
         if !self.directed || first == last {
             return 0.0;
         }
-        self.leg_skews[last] - self.leg_skews[first] + self.coupling_skews[last - 1]
-            - self.coupling_skews[first]
+        let sum = |position: usize| self.skew_sums[position];
+        sum(last)[0] - sum(first)[0] + sum(last - 1)[1] - sum(first)[1]
     }
 
     /// Makes a move.
@@ -250,34 +284,52 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
         }
     }
 
-    /// Updates the positions and sums that depend on the places at a range of positions.
+    /// Updates what depends on the places at a range of positions.
     fn update(&mut self, range: RangeInclusive<usize>) {
         for position in range.clone() {
             self.positions[self.places[position]] = position;
         }
+        let end = self.places.len() - 1;
+        let touched = range.start().saturating_sub(1)..=end.min(range.end() + 1);
+        for position in touched.clone() {
+            let before = self.place(position.wrapping_sub(1));
+            let (at, after) = (self.places[position], self.place(position + 1));
+            self.couplings[position] = self.coupling([before, at, after]);
+            if self.directed && (2..end).contains(&position) {
+                let leg = self.legs.leg(at, before) - self.legs.leg(before, at);
+                let coupling = if position + 1 < end {
+                    self.coupling([after, at, before]) - self.couplings[position]
+                } else {
+                    0.0
+                };
+                self.skews[position] = [leg, coupling];
+            }
+        }
         if self.directed {
-            self.sum_skews(*range.start());
+            for position in (*touched.start()).max(1)..end {
+                let [leg, coupling] = self.skew_sums[position - 1];
+                let skew = self.skews[position];
+                self.skew_sums[position] = [leg + skew[0], coupling + skew[1]];
+            }
         }
     }
+}
 
-    /// Sums the skews from a position on. Legs and couplings at the outer places are never reversed
-    /// and have none.
-    fn sum_skews(&mut self, first: usize) {
-        let last_target = self.places.len() - 2;
-        for position in first.max(2) - 1..=last_target {
-            let at = self.places[position];
-            let before = self.places[position - 1];
-            let (mut leg, mut coupling) = (0.0, 0.0);
-            if position > 1 {
-                leg = self.legs.leg(at, before) - self.legs.leg(before, at);
-            }
-            if position > 1 && position < last_target {
-                let after = self.places[position + 1];
-                coupling =
-                    self.cost.coupling(after, at, before) - self.cost.coupling(before, at, after);
-            }
-            self.leg_skews[position] = self.leg_skews[position - 1] + leg;
-            self.coupling_skews[position] = self.coupling_skews[position - 1] + coupling;
-        }
+impl Joints {
+    fn add_leg(&mut self, legs: &ReducedLegs, to: usize) {
+        self.legs_s += legs.leg(self.at, to);
+        self.add_coupling(to);
+        self.before = self.at;
+        self.at = to;
+    }
+
+    /// Adds the coupling where the path has come to, before it goes on.
+    fn add_coupling(&mut self, after: usize) {
+        self.couplings[self.count] = [self.before, self.at, after];
+        self.count += 1;
+    }
+
+    fn couplings(&self) -> impl Iterator<Item = [usize; 3]> {
+        self.couplings[..self.count].iter().copied()
     }
 }

@@ -13,7 +13,8 @@ use crate::tour::order::completion::{MAX_EXACT_TARGETS, SpanningTrees};
 use crate::tour::order::heuristics::{self, SearchEffort};
 use crate::tour::order::lagrangian::LagrangianPaths;
 use crate::tour::order::triple_bounds::{AscentEffort, TripleBoundSubsets, TripleBounds};
-use crate::tour::order::{PairTable, SearchEnd, TourModel};
+use crate::tour::order::{PairTable, SearchEnd, TourEvaluation, TourModel};
+use std::sync::{Mutex, PoisonError};
 
 /// Largest number of steps of an ascent.
 const MAX_STEPS: usize = 400;
@@ -28,37 +29,40 @@ const MAX_ROUNDS: u64 = 100;
 const ROUNDS_WITHOUT_GAIN: u64 = 2;
 /// Relative rise of the bound in a round that counts as none.
 const MIN_RELATIVE_GAIN: f64 = 2e-4;
-/// Work on the bounds for many targets while a first order is evaluated, before the first round, and
-/// in a round. The paths are counted per target; those of five places are for when the triples are
-/// exhausted.
-const BESIDE_FIRST_ORDER: AscentEffort = AscentEffort {
+/// Work on the bounds for many targets while the first orders are evaluated, and in a later round. The paths
+/// are counted per target; those of five places are for when the triples are exhausted.
+const BESIDE_FIRST_ORDERS: AscentEffort = AscentEffort {
     triples: 4,
     fives: 0,
     fives_before_triples_end: false,
     steps: 60,
 };
-const BEFORE_ROUNDS: AscentEffort = AscentEffort {
-    triples: 24,
-    steps: MAX_STEPS,
-    ..BESIDE_FIRST_ORDER
-};
 const OF_ROUND: AscentEffort = AscentEffort {
     triples: 12,
     fives: 8,
-    ..BEFORE_ROUNDS
+    steps: MAX_STEPS,
+    ..BESIDE_FIRST_ORDERS
 };
-/// Passes of a round: each learns the couplings along the orders that it finds.
+/// Steps of an ascent in a round times the number of targets, at most: a step takes a time that grows with
+/// the square of that number.
+const STEPS_TIMES_TARGETS: usize = 120_000;
+/// Passes of a round, of which the last one raises the bounds; one where a single order is evaluated in each.
 const PASSES: u64 = 2;
-/// Heuristic searches for orders in a pass.
-const ORDERS_PER_PASS: u64 = 2;
+/// Heuristic searches for orders at a time.
+const ORDERS_PER_SEARCH: u64 = 2;
 /// Kicks per target of a heuristic search, at least and at most.
 const KICKS_PER_TARGET: usize = 15;
 const MIN_KICKS: usize = 2_000;
 const MAX_KICKS: usize = 4_000;
-/// Kicks of the search for a first order.
+/// Kicks of the searches for the first orders.
 const FIRST_KICKS: usize = 1_000;
-/// Orders of a pass that are evaluated.
+/// Largest number of searches in a pass, each from the best order of those before, and the relative excess of
+/// an order over what a search expected from which another one follows.
+const MAX_SEARCHES: u64 = 5;
+const UNDERESTIMATED: f64 = 2e-3;
+/// Orders of a pass that are evaluated, and most targets in all of them if there are several.
 const ORDERS_EVALUATED: usize = 2;
+const TARGETS_EVALUATED: usize = 600;
 
 /// Bounds that take couplings into account.
 pub(super) enum CoupledBounds {
@@ -114,6 +118,11 @@ impl CoupledBounds {
     }
 }
 
+/// Number of orders of so many targets that a pass evaluates.
+fn orders_evaluated(targets: usize) -> usize {
+    (TARGETS_EVALUATED / targets).clamp(1, ORDERS_EVALUATED)
+}
+
 impl OrderSearch<'_> {
     /// Whether there are many targets, some of which couple their legs.
     pub(super) fn has_many_couplings(&self) -> bool {
@@ -121,8 +130,8 @@ impl OrderSearch<'_> {
         targets > MAX_EXACT_TARGETS && (0..targets).any(|via| self.model.couples(via))
     }
 
-    /// For many targets, improves orders and raises the triple bounds in turn, before the root is
-    /// opened, until neither gains much.
+    /// For many targets, improves orders and raises the triple bounds, in rounds before the root is opened,
+    /// until neither gains much.
     pub(super) fn bound_and_improve_orders(&mut self) -> Option<SearchEnd> {
         if !self.has_many_couplings() {
             return None;
@@ -130,25 +139,28 @@ impl OrderSearch<'_> {
         let table = self.tree.table();
         let trees = self.tree.spanning_trees()?;
         let mut triple_bounds = TripleBounds::new(self.model, table, trees)?;
-        if self.tree.best_s().is_none() {
-            self.fly_a_first_order(&mut triple_bounds);
-        }
-        // Orders that are short in estimated couplings alone are far from short.
-        self.raise_triple_bounds(&mut triple_bounds, BEFORE_ROUNDS);
+        // At first orders that are short in estimated couplings, beside the first triples.
+        let orders = self.orders_to_evaluate(&mut triple_bounds, 0, FIRST_KICKS);
+        self.evaluate_and_raise(&orders, &mut triple_bounds, Some(BESIDE_FIRST_ORDERS));
+        let targets = self.tree.table().targets();
+        let kicks = (KICKS_PER_TARGET * targets).clamp(MIN_KICKS, MAX_KICKS);
+        let passes = if orders_evaluated(targets) > 1 {
+            PASSES
+        } else {
+            1
+        };
         let mut without_gain = 0;
         for round in 0..MAX_ROUNDS {
             let before = (self.tree.best_s(), triple_bounds.root_bound());
-            for pass in 1..=PASSES {
-                let pass = round * PASSES + pass;
-                self.improve_orders(&mut triple_bounds, pass);
+            for pass in 1..=passes {
                 if self.stop.is_set() {
                     break;
                 }
+                let seed = round * PASSES + pass;
+                let orders = self.orders_to_evaluate(&mut triple_bounds, seed, kicks);
+                let effort = (pass == passes).then_some(OF_ROUND);
+                self.evaluate_and_raise(&orders, &mut triple_bounds, effort);
             }
-            if self.stop.is_set() {
-                break;
-            }
-            self.raise_triple_bounds(&mut triple_bounds, OF_ROUND);
             let raised = triple_bounds.root_bound() > before.1 * (1.0 + MIN_RELATIVE_GAIN);
             let gained = raised || self.tree.best_s() < before.0;
             without_gain = if gained { 0 } else { without_gain + 1 };
@@ -161,81 +173,91 @@ impl OrderSearch<'_> {
         self.stop.is_set().then(|| self.stopped())
     }
 
-    /// Evaluates an order that is short in estimated couplings, and begins to raise the triple bounds
-    /// meanwhile: one tour of many targets keeps one worker busy for seconds.
-    fn fly_a_first_order(&mut self, triple_bounds: &mut TripleBounds) {
-        let orders = self.orders_to_evaluate(triple_bounds, 0, FIRST_KICKS);
-        let Some(order) = orders.into_iter().next() else {
-            return;
-        };
-        let (model, pool, stop) = (self.model, self.pool, self.stop);
-        let (answer, ()) = pool.join(
-            || evaluate_order(model, &order, stop),
-            || self.raise_triple_bounds(triple_bounds, BESIDE_FIRST_ORDER),
-        );
-        self.tree.record_candidate(&order, answer);
-        self.learn(triple_bounds, &[order]);
-    }
-
-    /// Raises the triple bounds for many targets and the bound of the root, by an effort per target.
-    fn raise_triple_bounds(&mut self, triple_bounds: &mut TripleBounds, effort: AscentEffort) {
-        let targets = triple_bounds.table().targets();
-        let effort = AscentEffort {
-            triples: effort.triples * targets,
-            fives: effort.fives * targets,
-            ..effort
-        };
-        let mut tell = |bound_s| {
-            self.tree.bound_root(bound_s);
-            self.reporter.report(&self.tree);
-        };
-        triple_bounds.raise(self.model, &effort, self.pool, self.stop, &mut tell);
-        tell(triple_bounds.root_bound());
-    }
-
-    /// Evaluates orders that are short in the known and estimated couplings.
-    fn improve_orders(&mut self, triple_bounds: &mut TripleBounds, pass: u64) {
-        let kicks = KICKS_PER_TARGET * self.tree.table().targets();
-        let kicks = kicks.clamp(MIN_KICKS, MAX_KICKS);
-        let mut orders = self.orders_to_evaluate(triple_bounds, pass, kicks);
-        orders.truncate(ORDERS_EVALUATED);
-        self.evaluate_new(&orders);
-        self.learn(triple_bounds, &orders);
-    }
-
-    /// Has the estimates learn from evaluated orders, and reports what they changed.
-    fn learn(&mut self, triple_bounds: &mut TripleBounds, orders: &[Vec<usize>]) {
-        for order in orders {
-            triple_bounds.learn(order, self.model);
-        }
-        self.reporter.announce(&self.tree);
-        self.reporter.report(&self.tree);
-    }
-
     /// Searches for orders that are short in the known and estimated couplings, and solves their unknown
-    /// triples. The shortest comes first.
+    /// triples. Searches are drawn to those that are underestimated; then others follow, which know them.
+    /// Returns the shortest orders, the best first.
     fn orders_to_evaluate(
         &self,
         triple_bounds: &mut TripleBounds,
         pass: u64,
         kicks: usize,
     ) -> Vec<Vec<usize>> {
-        let first = pass * ORDERS_PER_PASS;
-        let seeds: Vec<u64> = (first..first + ORDERS_PER_PASS).collect();
-        let found = self.pool.map(&seeds, |&seed| {
-            let effort = SearchEffort {
-                kicks,
-                alternatives: 0,
-                seed,
+        let mut orders: Vec<Vec<usize>> = Vec::new();
+        for search in 0..MAX_SEARCHES {
+            let from = orders.first().map(Vec::as_slice);
+            let first = (pass * MAX_SEARCHES + search) * ORDERS_PER_SEARCH;
+            let seeds: Vec<u64> = (first..first + ORDERS_PER_SEARCH).collect();
+            let found = self.pool.map(&seeds, |&seed| {
+                let effort = SearchEffort {
+                    kicks,
+                    alternatives: 0,
+                    seed,
+                };
+                let tree = &self.tree;
+                tree.short_orders(triple_bounds, from, &effort, self.stop)
+            });
+            orders.extend(found.into_iter().flatten());
+            let least = |costs: &TripleBounds, orders: &[Vec<usize>]| {
+                let estimates = orders
+                    .iter()
+                    .map(|order| heuristics::estimated(costs, order));
+                estimates.fold(f64::INFINITY, f64::min)
             };
-            self.tree.short_orders(triple_bounds, &effort, self.stop)
-        });
-        let mut orders: Vec<Vec<usize>> = found.into_iter().flatten().collect();
-        triple_bounds.ask_along(&orders, self.model, self.pool, self.stop);
-        let estimated = |order: &Vec<usize>| heuristics::estimated(triple_bounds, order);
-        orders.sort_by(|a, b| estimated(a).total_cmp(&estimated(b)));
-        orders.dedup();
+            let expected_s = least(triple_bounds, &orders);
+            triple_bounds.ask_along(&orders, self.model, self.pool, self.stop);
+            let estimated = |order: &Vec<usize>| heuristics::estimated(triple_bounds, order);
+            orders.sort_by(|a, b| estimated(a).total_cmp(&estimated(b)));
+            orders.dedup();
+            let known_s = least(triple_bounds, &orders);
+            if self.stop.is_set() || known_s <= expected_s * (1.0 + UNDERESTIMATED) {
+                break;
+            }
+        }
+        orders.truncate(orders_evaluated(triple_bounds.table().targets()));
         orders
+    }
+
+    /// Evaluates orders, and raises the triple bounds and the bound of the root meanwhile, by an effort per
+    /// target: one tour of many targets keeps one worker busy for seconds. The estimates learn from the
+    /// tours.
+    fn evaluate_and_raise(
+        &mut self,
+        orders: &[Vec<usize>],
+        triple_bounds: &mut TripleBounds,
+        effort: Option<AscentEffort>,
+    ) {
+        let targets = triple_bounds.table().targets();
+        let effort = effort.map(|effort| AscentEffort {
+            triples: effort.triples * targets,
+            fives: effort.fives * targets,
+            steps: effort.steps.min(STEPS_TIMES_TARGETS / targets),
+            ..effort
+        });
+        let fresh = orders.iter().filter(|order| self.tree.is_new(order));
+        let fresh: Vec<Vec<usize>> = fresh.cloned().collect();
+        let (model, pool, stop) = (self.model, self.pool, self.stop);
+        let evaluated = Mutex::new(None);
+        let mut tell = |bound_s| {
+            self.tree.bound_root(bound_s);
+            let mut evaluated = evaluated.lock().unwrap_or_else(PoisonError::into_inner);
+            let answers: Vec<TourEvaluation> = evaluated.take().unwrap_or_default();
+            for (order, answer) in fresh.iter().zip(answers) {
+                self.tree.record_candidate(order, answer);
+            }
+            self.reporter.announce(&self.tree);
+            self.reporter.report(&self.tree);
+        };
+        pool.join(
+            || {
+                let answers = pool.map(&fresh, |order| evaluate_order(model, order, stop));
+                *evaluated.lock().unwrap_or_else(PoisonError::into_inner) = Some(answers);
+            },
+            || effort.map(|effort| triple_bounds.raise(model, &effort, pool, stop, &mut tell)),
+        );
+        tell(triple_bounds.root_bound());
+        for order in orders {
+            triple_bounds.learn(order, model);
+        }
     }
 
     /// Computes the triple bounds of a long search over few targets.

@@ -151,16 +151,18 @@ impl SearchTree {
         self.first.is_some() || self.best_s().is_some()
     }
 
-    /// Orders that are short by some costs, best first; the search begins at the best evaluated
-    /// order.
+    /// Orders that are short by some costs, best first. The search begins at a given order, else at the best
+    /// evaluated one.
     pub(super) fn short_orders(
         &self,
         costs: &TripleBounds,
+        from: Option<&[usize]>,
         effort: &SearchEffort,
         stop: &StopSignal,
     ) -> Vec<Vec<usize>> {
-        let best = self.incumbents.orders().first().map(|best| &best.order);
-        let Some(order) = best.or(self.first.as_ref()) else {
+        let best = self.incumbents.orders().first();
+        let best = best.map(|best| best.order.as_slice());
+        let Some(order) = from.or(best).or(self.first.as_deref()) else {
             return Vec::new();
         };
         heuristics::shorter_orders(costs, self.table.rules(), order, effort, stop)

@@ -35,6 +35,8 @@ fn the_change_of_a_move_is_the_difference_of_the_lengths() {
                 for _ in 0..1000 {
                     let step = random_move(&mut random, targets);
                     let change = path.change(step);
+                    let below = |limit| path.change_below(limit, step).is_some();
+                    assert!(below(change + 1e-9) && !below(change - 1e-9));
                     path.apply(step);
                     let after = length(&cost, targets, path.order());
                     let expected = after - before;

@@ -13,7 +13,6 @@ use super::triple_bounds::TripleBounds;
 use super::{PairTable, TourModel};
 use crate::model::order_rules::OrderRules;
 use crate::run::stop::StopSignal;
-use cost::{OrderCost, TabulatedCost};
 use iterated::IteratedSearch;
 use local_search::OrderTask;
 
@@ -88,25 +87,10 @@ pub(super) fn shorter_orders(
     effort: &SearchEffort,
     stop: &StopSignal,
 ) -> Vec<Vec<usize>> {
-    let from = costs.table().start();
-    match TabulatedCost::of(costs) {
-        Some(tabulated) => from_order(&tabulated, from, rules, order, effort, stop),
-        None => from_order(costs, from, rules, order, effort, stop),
-    }
-}
-
-fn from_order<C: OrderCost>(
-    cost: &C,
-    from: usize,
-    rules: &OrderRules,
-    order: &[usize],
-    effort: &SearchEffort,
-    stop: &StopSignal,
-) -> Vec<Vec<usize>> {
     let admits = |order: &[usize]| rules.admits(order);
     let task = OrderTask {
-        cost,
-        from,
+        cost: costs,
+        from: costs.table().start(),
         admits: (!rules.is_free()).then_some(&admits),
     };
     let mut search = IteratedSearch::new(&task, order, effort.alternatives, effort.seed);

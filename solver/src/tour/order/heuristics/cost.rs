@@ -47,51 +47,6 @@ impl OrderCost for TripleBounds {
     }
 }
 
-/// A cost whose couplings are listed in advance: a search looks each of them up some hundred times.
-pub(super) struct TabulatedCost<'a, C> {
-    cost: &'a C,
-    places: usize,
-    /// By `via`, `from` and `to`.
-    couplings: Vec<f64>,
-}
-
-/// Number of targets up to which couplings are listed, 8 MB for so many.
-const MAX_TABULATED: usize = 100;
-
-impl<'a, C: OrderCost> TabulatedCost<'a, C> {
-    /// The same cost as it is now; `None` for too many targets.
-    pub(super) fn of(cost: &'a C) -> Option<Self> {
-        let (targets, places) = (cost.targets(), cost.targets() + 2);
-        let triples = (0..targets * places * places).map(|triple| {
-            let (pair, to) = (triple / places, triple % places);
-            cost.coupling(pair % places, pair / places, to)
-        });
-        (targets <= MAX_TABULATED).then(|| Self {
-            cost,
-            places,
-            couplings: triples.collect(),
-        })
-    }
-}
-
-impl<C: OrderCost> OrderCost for TabulatedCost<'_, C> {
-    fn targets(&self) -> usize {
-        self.cost.targets()
-    }
-
-    fn leg(&self, from: usize, to: usize) -> f64 {
-        self.cost.leg(from, to)
-    }
-
-    fn coupling(&self, from: usize, via: usize, to: usize) -> f64 {
-        self.couplings[(via * self.places + from) * self.places + to]
-    }
-
-    fn couplings_are_symmetric(&self) -> bool {
-        self.cost.couplings_are_symmetric()
-    }
-}
-
 impl OrderCost for PairTable {
     fn targets(&self) -> usize {
         PairTable::targets(self)

@@ -3,7 +3,7 @@
 use super::models::{Couplings, Legs, RandomCost};
 use crate::run::stop::StopSignal;
 use crate::tour::order::completion::SpanningTrees;
-use crate::tour::order::heuristics::cost::{OrderCost, TabulatedCost, length};
+use crate::tour::order::heuristics::cost::{OrderCost, length};
 use crate::tour::order::heuristics::iterated::IteratedSearch;
 use crate::tour::order::heuristics::local_search::OrderTask;
 use crate::tour::order::{PairTable, SolvedOrder};
@@ -25,17 +25,6 @@ fn found<C: OrderCost>(cost: &C, kicks: usize, alternatives: usize, seed: u64) -
     let mut search = IteratedSearch::new(&task, &all(cost.targets()), alternatives, seed);
     search.run(kicks, &StopSignal::new());
     search.best().to_vec()
-}
-
-#[test]
-fn listed_couplings_change_nothing_and_too_many_are_not_listed() {
-    for couplings in [Couplings::BothWays, Couplings::Directed] {
-        let cost = RandomCost::new(30, Legs::Directed, couplings, 5);
-        let listed = TabulatedCost::of(&cost).expect("few targets");
-        assert_eq!(found(&listed, 300, 2, 1), found(&cost, 300, 2, 1));
-    }
-    let many = RandomCost::new(101, Legs::Points, Couplings::None, 5);
-    assert!(TabulatedCost::of(&many).is_none());
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod cost;
 mod iterated;
+mod joints;
 mod local_search;
 mod neighbours;
 mod path;

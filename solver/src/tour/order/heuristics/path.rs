@@ -1,10 +1,8 @@
 //! An order that moves change, with the change of cost of a move.
 
 use super::cost::{OrderCost, ReducedLegs};
+use super::joints::{Joints, NOWHERE};
 use std::ops::RangeInclusive;
-
-/// Stands for the missing place before the first one and after the last one.
-const NOWHERE: usize = usize::MAX;
 
 /// A change of the order. Positions count the place before the order as 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,17 +52,6 @@ pub(super) struct OrderPath<'a, C> {
     skews: Vec<[f64; 2]>,
     /// Sums of the skews up to each position, s.
     skew_sums: Vec<[f64; 2]>,
-}
-
-/// The joints with which segments are put together.
-struct Joints {
-    before: usize,
-    at: usize,
-    /// Sum of the legs, s.
-    legs_s: f64,
-    /// The couplings, each as the places before, at and after it: at most six.
-    couplings: [[usize; 3]; 6],
-    count: usize,
 }
 
 impl<'a, C: OrderCost> OrderPath<'a, C> {
@@ -211,13 +198,8 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
     /// The joints when these segments replace the places at a range of positions. The legs and couplings
     /// inside the segments are not part of them.
     fn joints<const N: usize>(&self, range: (usize, usize), pieces: [SegmentEnds; N]) -> Joints {
-        let mut joints = Joints {
-            before: self.place(range.0.wrapping_sub(2)),
-            at: self.places[range.0 - 1],
-            legs_s: 0.0,
-            couplings: [[NOWHERE; 3]; 6],
-            count: 0,
-        };
+        let before = self.place(range.0.wrapping_sub(2));
+        let mut joints = Joints::from(before, self.places[range.0 - 1]);
         for (enter, leave) in pieces {
             joints.add_leg(&self.legs, self.places[enter]);
             if enter != leave {
@@ -226,8 +208,7 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
                 let second = if forth { enter + 1 } else { enter - 1 };
                 let penultimate = if forth { leave - 1 } else { leave + 1 };
                 joints.add_coupling(self.places[second]);
-                joints.before = self.places[penultimate];
-                joints.at = self.places[leave];
+                joints.go_on(self.places[penultimate], self.places[leave]);
             }
         }
         joints.add_leg(&self.legs, self.places[range.1 + 1]);
@@ -312,24 +293,5 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
                 self.skew_sums[position] = [leg + skew[0], coupling + skew[1]];
             }
         }
-    }
-}
-
-impl Joints {
-    fn add_leg(&mut self, legs: &ReducedLegs, to: usize) {
-        self.legs_s += legs.leg(self.at, to);
-        self.add_coupling(to);
-        self.before = self.at;
-        self.at = to;
-    }
-
-    /// Adds the coupling where the path has come to, before it goes on.
-    fn add_coupling(&mut self, after: usize) {
-        self.couplings[self.count] = [self.before, self.at, after];
-        self.count += 1;
-    }
-
-    fn couplings(&self) -> impl Iterator<Item = [usize; 3]> {
-        self.couplings[..self.count].iter().copied()
     }
 }

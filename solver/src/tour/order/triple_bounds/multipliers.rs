@@ -113,8 +113,7 @@ impl Multipliers {
                 values[at] += factor * change;
             }
         }
-        for (&at, change) in &changes.joint {
-            let (pair, beyond) = (at / self.places, at % self.places);
+        for (&(pair, beyond), change) in &changes.joint {
             let joint = self.joint.entry(pair).or_default();
             joint.add(beyond, factor * change);
         }
@@ -130,7 +129,8 @@ pub(super) struct Heading {
     places: usize,
     near: HashMap<usize, f64, FixedState>,
     outer: HashMap<usize, f64, FixedState>,
-    joint: HashMap<usize, f64, FixedState>,
+    /// By target and neighbour, and by place beyond.
+    joint: HashMap<(usize, usize), f64, FixedState>,
 }
 
 impl Heading {
@@ -146,12 +146,13 @@ impl Heading {
 
     /// Multiplies all values by a factor.
     pub(super) fn scale(&mut self, factor: f64) {
-        for values in [&mut self.near, &mut self.outer, &mut self.joint] {
-            values.retain(|_, value| {
-                *value *= factor;
-                value.abs() > NEGLIGIBLE
-            });
-        }
+        let scale = |value: &mut f64| {
+            *value *= factor;
+            value.abs() > NEGLIGIBLE
+        };
+        self.near.retain(|_, value| scale(value));
+        self.outer.retain(|_, value| scale(value));
+        self.joint.retain(|_, value| scale(value));
     }
 
     /// Makes all values of outer and joint multipliers zero.
@@ -162,8 +163,8 @@ impl Heading {
 
     /// Adds to the value of a joint multiplier.
     pub(super) fn add_joint(&mut self, [target, neighbour, beyond]: [usize; 3], change: f64) {
-        let at = (target * self.places + neighbour) * self.places + beyond;
-        *self.joint.entry(at).or_default() += change;
+        let pair = target * self.places + neighbour;
+        *self.joint.entry((pair, beyond)).or_default() += change;
     }
 
     /// Adds to the value of an inner multiplier.

@@ -43,11 +43,17 @@ const OF_ROUND: AscentEffort = AscentEffort {
     steps: MAX_STEPS,
     ..BESIDE_FIRST_ORDERS
 };
+/// The same while the second orders are evaluated, where a round has several passes.
+const BESIDE_SECOND_ORDERS: AscentEffort = AscentEffort {
+    triples: 24,
+    steps: MAX_STEPS,
+    ..BESIDE_FIRST_ORDERS
+};
 /// Steps of an ascent in a round times the number of targets, at most: a step takes a time that grows with
 /// the square of that number.
 const STEPS_TIMES_TARGETS: usize = 120_000;
-/// Passes of a round, of which the last one raises the bounds, as all of the first round do; one where a single
-/// order is evaluated in each.
+/// Passes of a round, of which the last one raises the bounds, as does the very first; one where a single order is
+/// evaluated in each.
 const PASSES: u64 = 2;
 /// Heuristic searches for orders at a time.
 const ORDERS_PER_SEARCH: u64 = 2;
@@ -159,8 +165,10 @@ impl OrderSearch<'_> {
                 }
                 let seed = round * PASSES + pass;
                 let orders = self.orders_to_evaluate(&mut triple_bounds, seed, kicks);
-                let raises = round == 0 || pass == passes;
-                let effort = raises.then_some(OF_ROUND);
+                let effort = match round {
+                    0 if pass == 1 && passes > 1 => Some(BESIDE_SECOND_ORDERS),
+                    _ => (pass == passes).then_some(OF_ROUND),
+                };
                 self.evaluate_and_raise(&orders, &mut triple_bounds, effort);
             }
             let raised = triple_bounds.root_bound() > before.1 * (1.0 + MIN_RELATIVE_GAIN);

@@ -228,7 +228,7 @@ impl OrderSearch<'_> {
     }
 
     /// Evaluates orders, and raises the triple bounds and the bound of the root meanwhile, by an effort per
-    /// target: one tour of many targets keeps one worker busy for seconds. The estimates learn from the
+    /// target if there is one: one tour of many targets keeps one worker busy for seconds. The estimates learn from the
     /// tours.
     fn evaluate_and_raise(
         &mut self,

@@ -58,6 +58,7 @@
 mod ascent;
 mod choice;
 mod coupling_gaps;
+mod edge_rows;
 mod gap_estimates;
 mod multipliers;
 mod ranking;
@@ -67,13 +68,14 @@ mod undirected_legs;
 pub use ascent::{AscentEffort, AscentWork};
 pub use subsets::TripleBoundSubsets;
 
-use super::completion::least_tree::{cheapest, least_tree};
+use super::completion::least_tree::{Edge, cheapest, least_tree};
 use super::completion::{LegCosts, SpanningTrees};
 use super::{PairTable, TourModel};
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use choice::Part;
 use coupling_gaps::{CouplingGaps, ShortPath};
+use edge_rows::EdgeRows;
 use multipliers::Multipliers;
 use ranking::Ranking;
 use std::collections::BTreeSet;
@@ -109,8 +111,8 @@ impl TripleBounds {
             legs: UndirectedLegs::new(table, trees.entry_offsets()),
             coupling_gaps: CouplingGaps::new(model, table),
             multipliers: Multipliers::of_potentials(trees.potentials()),
-            near: Ranking::new(targets),
-            far: Ranking::new(targets),
+            near: Ranking::default(),
+            far: Ranking::default(),
             root_s: 0.0,
             raised: false,
             symmetric: model.is_symmetric(),
@@ -134,12 +136,7 @@ impl TripleBounds {
         let part = Part::new(from, self.end(), remaining);
         let first = cheapest(remaining, |to| self.first(from, to)).1;
         let last = cheapest(remaining, |last| self.cost(last, self.end())).1;
-        let tree = least_tree(remaining.len(), |a, weights| {
-            for (weight, &to) in weights.iter_mut().zip(remaining) {
-                *weight = self.cost(remaining[a], to);
-            }
-        });
-        let edges: f64 = tree.iter().map(|edge| edge.weight).sum();
+        let edges: f64 = self.tree(remaining).iter().map(|edge| edge.weight).sum();
         (self.passing(&part) + first + edges + last).max(0.0)
     }
 
@@ -225,6 +222,12 @@ impl TripleBounds {
         self.rank(None);
         let all: Vec<usize> = (0..self.targets()).collect();
         self.root_s = self.root_s.max(self.bound(self.legs.table().start(), &all));
+    }
+
+    /// The minimum spanning tree of some targets; its edges join positions in their list.
+    fn tree(&self, targets: &[usize]) -> Vec<Edge> {
+        let mut edges = EdgeRows::new(&self.legs, &self.multipliers, targets);
+        least_tree(targets.len(), |at, weights| edges.fill(at, weights))
     }
 
     /// Sum over the targets of a part of their entry offsets and the costs of their cheapest

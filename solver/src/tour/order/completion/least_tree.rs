@@ -16,7 +16,7 @@ pub(in crate::tour::order) struct Edge {
 /// over whole rows, the inside of the tree included, are vectorised.
 pub(in crate::tour::order) fn least_tree(
     count: usize,
-    fill: impl Fn(usize, &mut [f64]),
+    mut fill: impl FnMut(usize, &mut [f64]),
 ) -> Vec<Edge> {
     let padded = count.next_multiple_of(LANES);
     let mut weights = vec![0.0; padded];

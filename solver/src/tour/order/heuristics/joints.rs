@@ -1,17 +1,13 @@
-//! The joints with which a move puts segments of an order together.
-
-use super::cost::ReducedLegs;
+//! The couplings at the joints with which a move puts segments of an order together.
 
 /// Stands for the missing place before the first one and after the last one.
 pub(super) const NOWHERE: usize = usize::MAX;
 
-/// The joints with which segments are put together.
+/// The couplings at the joints with which segments are put together.
 pub(super) struct Joints {
     before: usize,
     at: usize,
-    /// Sum of the legs, s.
-    pub(super) legs_s: f64,
-    /// The couplings, each as the places before, at and after it: at most six.
+    /// Each as the places before, at and after it: at most six.
     couplings: [[usize; 3]; 6],
     count: usize,
 }
@@ -22,18 +18,15 @@ impl Joints {
         Self {
             before,
             at,
-            legs_s: 0.0,
             couplings: [[NOWHERE; 3]; 6],
             count: 0,
         }
     }
 
-    /// Adds the leg to a place, and the coupling before it.
-    pub(super) fn add_leg(&mut self, legs: &ReducedLegs, to: usize) {
-        self.legs_s += legs.leg(self.at, to);
+    /// Goes to a place, and adds the coupling before the leg to it.
+    pub(super) fn go_to(&mut self, to: usize) {
         self.add_coupling(to);
-        self.before = self.at;
-        self.at = to;
+        self.go_on(self.at, to);
     }
 
     /// Adds the coupling where the path has come to, before it goes on to a place.
@@ -48,7 +41,7 @@ impl Joints {
         self.at = at;
     }
 
-    /// The couplings at the joints.
+    /// All of them.
     pub(super) fn couplings(&self) -> impl Iterator<Item = [usize; 3]> {
         self.couplings[..self.count].iter().copied()
     }

@@ -31,6 +31,25 @@ impl Move {
             Self::Reverse(first, last) | Self::Exchange { first, last, .. } => first..=last,
         }
     }
+
+    /// The segments in their new order.
+    fn segments(self) -> impl Iterator<Item = SegmentEnds> {
+        let turned = |piece: SegmentEnds, turn| if turn { (piece.1, piece.0) } else { piece };
+        let (one, other) = match self {
+            Self::Reverse(first, last) => ((last, first), None),
+            Self::Exchange {
+                first,
+                middle,
+                last,
+                reverse_first,
+                reverse_second,
+            } => (
+                turned((middle + 1, last), reverse_second),
+                Some(turned((first, middle), reverse_first)),
+            ),
+        };
+        std::iter::once(one).chain(other)
+    }
 }
 
 /// Positions of the first and the last place of a segment, in the direction of travel.
@@ -126,59 +145,49 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
 
     /// Change of the cost by a move, s.
     pub(super) fn change(&self, step: Move) -> f64 {
-        let (change, joints) = self.change_without_couplings(step);
-        change + joints.couplings().map(|c| self.coupling(c)).sum::<f64>()
+        let joints = self.joints(step);
+        let couplings = joints.couplings().map(|c| self.coupling(c));
+        self.change_without_couplings(step) + couplings.sum::<f64>()
     }
 
     /// The same if it is below a limit. Most moves are not, already without the couplings that they add,
     /// and these take longest to look up.
     pub(super) fn change_below(&self, limit: f64, step: Move) -> Option<f64> {
-        let (mut change, joints) = self.change_without_couplings(step);
-        for coupling in joints.couplings() {
+        let mut change = self.change_without_couplings(step);
+        if change >= limit {
+            return None;
+        }
+        for coupling in self.joints(step).couplings() {
+            change += self.coupling(coupling);
             if change >= limit {
                 return None;
             }
-            change += self.coupling(coupling);
         }
-        (change < limit).then_some(change)
+        Some(change)
     }
 
-    /// Change of the cost by a move but for the couplings at its new joints, s, and these joints.
-    fn change_without_couplings(&self, step: Move) -> (f64, Joints) {
-        match step {
-            Move::Reverse(first, last) => {
-                let joints = self.joints((first, last), [(last, first)]);
-                let removed = self.joints_after([first - 1, last]);
-                let inside = self.reversal_change((first, last));
-                (joints.legs_s - removed + inside, joints)
-            }
+    /// Change of the cost by a move but for the couplings at its new joints, s.
+    fn change_without_couplings(&self, step: Move) -> f64 {
+        let removed = match step {
+            Move::Reverse(first, last) => self.joints_after([first - 1, last]),
             Move::Exchange {
                 first,
                 middle,
                 last,
-                reverse_first,
-                reverse_second,
-            } => {
-                let pieces = [(first, middle), (middle + 1, last)];
-                let turned =
-                    |piece: SegmentEnds, turn| if turn { (piece.1, piece.0) } else { piece };
-                let inside = |piece, turn| {
-                    if turn {
-                        self.reversal_change(piece)
-                    } else {
-                        0.0
-                    }
-                };
-                let after = [
-                    turned(pieces[1], reverse_second),
-                    turned(pieces[0], reverse_first),
-                ];
-                let joints = self.joints((first, last), after);
-                let removed = self.joints_after([first - 1, middle, last]);
-                let inside = inside(pieces[0], reverse_first) + inside(pieces[1], reverse_second);
-                (joints.legs_s - removed + inside, joints)
+                ..
+            } => self.joints_after([first - 1, middle, last]),
+        };
+        let (first, last) = step.range().into_inner();
+        let mut at = self.places[first - 1];
+        let mut added = 0.0;
+        for (enter, leave) in step.segments() {
+            added += self.legs.leg(at, self.places[enter]);
+            if leave < enter {
+                added += self.reversal_change((leave, enter));
             }
+            at = self.places[leave];
         }
+        added + self.legs.leg(at, self.places[last + 1]) - removed
     }
 
     /// Cost of the joints after some ascending positions, s: their legs, and the couplings at their ends.
@@ -195,13 +204,13 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
         sum
     }
 
-    /// The joints when these segments replace the places at a range of positions. The legs and couplings
-    /// inside the segments are not part of them.
-    fn joints<const N: usize>(&self, range: (usize, usize), pieces: [SegmentEnds; N]) -> Joints {
-        let before = self.place(range.0.wrapping_sub(2));
-        let mut joints = Joints::from(before, self.places[range.0 - 1]);
-        for (enter, leave) in pieces {
-            joints.add_leg(&self.legs, self.places[enter]);
+    /// The joints of a move. The couplings inside its segments are not part of them.
+    fn joints(&self, step: Move) -> Joints {
+        let (first, last) = step.range().into_inner();
+        let before = self.place(first.wrapping_sub(2));
+        let mut joints = Joints::from(before, self.places[first - 1]);
+        for (enter, leave) in step.segments() {
+            joints.go_to(self.places[enter]);
             if enter != leave {
                 // The couplings at the two ends of a segment belong to its joints.
                 let forth = enter < leave;
@@ -211,8 +220,8 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
                 joints.go_on(self.places[penultimate], self.places[leave]);
             }
         }
-        joints.add_leg(&self.legs, self.places[range.1 + 1]);
-        joints.add_coupling(self.place(range.1 + 2));
+        joints.go_to(self.places[last + 1]);
+        joints.add_coupling(self.place(last + 2));
         joints
     }
 

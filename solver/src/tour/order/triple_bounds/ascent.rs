@@ -9,10 +9,9 @@ use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use crate::tour::order::TourModel;
 use crate::tour::order::completion::LegCosts;
-use crate::tour::order::completion::least_tree::{cheapest, least_tree};
+use crate::tour::order::completion::least_tree::cheapest;
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 // With these constants the bound is within 0.2 % of its limit after 400 steps, or four steps per
 // target if that is more, on 50 to 200 points on a sphere, uniform and clustered.
@@ -43,9 +42,6 @@ const MIN_RELATIVE_GAIN: f64 = 1e-3;
 const SHARED_FROM: usize = 30;
 /// Number of targets from which an ascent after a first one begins near the best multipliers.
 const MANY_TARGETS: usize = 60;
-
-/// Targets along the side of a square of edges.
-const SQUARE: usize = 32;
 
 /// Limits of the work of an ascent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -124,8 +120,6 @@ struct Ascent<'a> {
     triple_bounds: &'a mut TripleBounds,
     width: Width,
     part: Part<'a>,
-    /// Edges between targets less their multipliers, by rows, s.
-    weights: Vec<f64>,
     /// Direction of the next step in the multipliers.
     heading: Heading,
     /// Direction of the next step in the node potentials.
@@ -230,23 +224,12 @@ impl TripleBounds {
     }
 }
 
-/// The squares of a lower triangle.
-fn squares(targets: usize) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
-    let range = move |begin: usize| begin..(begin + SQUARE).min(targets);
-    let begins = move || (0..targets).step_by(SQUARE);
-    begins().flat_map(move |first| {
-        let seconds = begins().take_while(move |&second| second <= first);
-        seconds.map(move |second| (range(first), range(second)))
-    })
-}
-
 impl<'a> Ascent<'a> {
     fn new(triple_bounds: &'a mut TripleBounds, width: Width, all: &'a [usize], step: f64) -> Self {
         let targets = all.len();
         Self {
             part: Part::new(triple_bounds.legs.table().start(), triple_bounds.end(), all),
-            weights: vec![0.0; targets * targets],
-            heading: Heading::zero(targets),
+            heading: Heading::default(),
             potential_heading: vec![0.0; targets],
             step,
             stale: 0,
@@ -265,16 +248,6 @@ impl<'a> Ascent<'a> {
         self.triple_bounds.rank(pool);
         let triple_bounds = &*self.triple_bounds;
         let targets = self.part.targets.len();
-        // Square by square, since the multipliers of both ends of an edge are far apart.
-        for (first, second) in squares(targets) {
-            for a in first {
-                for b in second.start..second.end.min(a) {
-                    let weight = triple_bounds.cost(a, b);
-                    self.weights[a * targets + b] = weight;
-                    self.weights[b * targets + a] = weight;
-                }
-            }
-        }
         let mut choices = RelaxedChoices {
             bound: 0.0,
             targets: Vec::with_capacity(targets),
@@ -295,10 +268,7 @@ impl<'a> Ascent<'a> {
             choices.bound += weight;
             choices.edges.push([target, outer]);
         }
-        let fill = |a: usize, weights: &mut [f64]| {
-            weights.copy_from_slice(&self.weights[a * targets..][..targets]);
-        };
-        for edge in least_tree(targets, fill) {
+        for edge in triple_bounds.tree(self.part.targets) {
             choices.bound += edge.weight;
             choices.edges.push(edge.ends);
         }
@@ -392,13 +362,8 @@ impl<'a> Ascent<'a> {
             self.heading.stay_outside();
         }
         let multipliers = &mut self.triple_bounds.multipliers;
-        let rows = multipliers.near.chunks_exact_mut(targets + 2);
-        for (row, potential) in rows.zip(&self.potential_heading) {
-            let change = self.step * POTENTIAL_WEIGHT * potential;
-            for multiplier in row {
-                *multiplier += change;
-            }
-        }
+        let potentials = self.potential_heading.iter();
+        multipliers.shift(potentials.map(|potential| self.step * POTENTIAL_WEIGHT * potential));
         multipliers.add(&self.heading, self.step);
     }
 }

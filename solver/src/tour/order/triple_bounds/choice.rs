@@ -1,7 +1,8 @@
 //! The cheapest neighbours of each target: one of the two relaxed choices of the decomposition.
 
 use super::TripleBounds;
-use super::multipliers::JointMultipliers;
+use super::multipliers::PlaceMultipliers;
+use super::ranking::CostsAround;
 use crate::run::pool::SolverPool;
 
 /// The part of a tour that a bound is for: from a place through some targets to the end.
@@ -64,14 +65,27 @@ impl TripleBounds {
             ..
         } = self;
         let targets = self.legs.table().targets();
-        far.rank(pool, |of, place| multipliers.outer(of, place));
+        let zero = std::iter::repeat_n(0.0, targets + 2);
+        far.rank(pool, targets, zero, |of| CostsAround {
+            common: 0.0,
+            own: multipliers.outer(of).listed(),
+        });
         let least: Vec<f64> = (0..targets).map(|of| far.least(of)).collect();
-        near.rank(pool, |via, place| {
-            if place >= targets {
-                return multipliers.near(via, place) + least[via];
-            }
-            let joint = multipliers.joint(place, via).least - multipliers.joint(via, place).most;
-            multipliers.near(via, place) + least[place] + joint
+        let (multipliers, least) = (&*multipliers, &least);
+        near.rank(pool, targets, least.iter().copied(), |via| {
+            let common = multipliers.common(via);
+            // Next to an end of the tour it is the target's own outer multiplier for its other neighbour.
+            let cost = move |(place, rest): (usize, f64)| {
+                let outer = *least.get(place).unwrap_or(&least[via]);
+                let joint = if place >= targets || multipliers.has_no_joint() {
+                    0.0
+                } else {
+                    multipliers.joint(place, via).least - multipliers.joint(via, place).most
+                };
+                (place, common + rest + outer + joint)
+            };
+            let own = multipliers.near_rest(via).listed().map(cost);
+            CostsAround { common, own }
         });
     }
 
@@ -88,14 +102,13 @@ impl TripleBounds {
             beyond: [[via; 2]; 2],
             cost: f64::INFINITY,
         };
-        let inner = |&place: &usize| part.admitted[place] && place != part.entry;
+        let inner = |&(place, _): &(usize, f64)| part.admitted[place] && place != part.entry;
         let mut places = self.near.row(via).filter(inner);
-        let cost = |place| self.near.cost(via, place);
         // The entry is treated apart: nothing lies beyond it on the part, whether it is a target or
         // not, so its rank does not apply.
         let entry = self.multipliers.near(via, part.entry) + self.far.least(via);
-        for other in places.clone() {
-            if entry + cost(other) >= best.cost {
+        for (other, cost) in places.clone() {
+            if entry + cost >= best.cost {
                 break;
             }
             // Only the target of a part with one target lies between its two ends.
@@ -103,9 +116,9 @@ impl TripleBounds {
                 self.choose_beyond(part, via, [part.entry, other], &mut best);
             }
         }
-        while let Some(one) = places.next() {
-            for (rank, other) in places.clone().enumerate() {
-                if cost(one) + cost(other) >= best.cost {
+        while let Some((one, one_s)) = places.next() {
+            for (rank, (other, other_s)) in places.clone().enumerate() {
+                if one_s + other_s >= best.cost {
                     // If the cheapest partner fails, all later pairs fail too.
                     if rank <= 1 {
                         return best;
@@ -134,7 +147,7 @@ impl TripleBounds {
         // An end of the part has no choice of its own that would have to agree.
         let joint = |neighbour: usize| {
             if part.is_outer(neighbour) {
-                return [JointMultipliers::NONE; 2];
+                return [PlaceMultipliers::NONE; 2];
             }
             [[via, neighbour], [neighbour, via]].map(|[of, seen]| self.multipliers.joint(of, seen))
         };
@@ -190,17 +203,15 @@ impl TripleBounds {
     ) -> impl Iterator<Item = ([usize; 2], f64)> + Clone {
         let outer = part.is_outer(one);
         let of = if outer { via } else { one };
-        let fits = move |&place: &usize| {
+        let fits = move |&(place, _): &(usize, f64)| {
             if outer {
                 place == other
             } else {
                 part.admitted[place] && place != via && place != other
             }
         };
-        self.far
-            .row(of)
-            .filter(fits)
-            .map(move |place| ([of, place], self.far.cost(of, place)))
+        let places = self.far.row(of).filter(fits);
+        places.map(move |(place, cost)| ([of, place], cost))
     }
 }
 
@@ -250,8 +261,8 @@ mod tests {
                             multipliers.joint(via, neighbour).of(beyond)
                         }
                     };
-                    let outer = multipliers.outer(of, first)
-                        + multipliers.outer(to, last)
+                    let outer = multipliers.outer(of).of(first)
+                        + multipliers.outer(to).of(last)
                         + joint(of, first)
                         + joint(to, last)
                         - own(one, other)

@@ -3,21 +3,9 @@
 use foldhash::fast::FixedState;
 use std::collections::HashMap;
 
-/// The multipliers, s: of the inner and outer ones a row for each target, with a value for each place.
-#[derive(Debug, Clone)]
-pub(super) struct Multipliers {
-    places: usize,
-    /// Inner multipliers: cost of the place as a neighbour of the target.
-    pub(super) near: Vec<f64>,
-    /// Outer multipliers: cost for a neighbour of the target when the place lies beyond the target.
-    pub(super) outer: Vec<f64>,
-    /// Joint multipliers, most of which are zero, by target and neighbour.
-    joint: HashMap<usize, JointMultipliers, FixedState>,
-}
-
-/// Cost for one neighbour of a target when a place lies beyond the target, s.
+/// Multipliers for some places, s. Those for all others are zero.
 #[derive(Debug, Clone, Default)]
-pub(super) struct JointMultipliers {
+pub(super) struct PlaceMultipliers {
     /// By place, sorted.
     values: Vec<(u32, f64)>,
     /// The least of them, or zero.
@@ -26,7 +14,7 @@ pub(super) struct JointMultipliers {
     pub(super) most: f64,
 }
 
-impl JointMultipliers {
+impl PlaceMultipliers {
     /// All zero.
     pub(super) const NONE: &Self = &Self {
         values: Vec::new(),
@@ -39,18 +27,22 @@ impl JointMultipliers {
         self.position(place).map_or(0.0, |at| self.values[at].1)
     }
 
+    /// The places that are listed, in their order, with their values.
+    pub(super) fn listed(&self) -> impl Iterator<Item = (usize, f64)> {
+        let values = self.values.iter();
+        values.map(|&(place, value)| (place as usize, value))
+    }
+
     fn position(&self, place: usize) -> Result<usize, usize> {
         self.values
             .binary_search_by_key(&place, |entry| entry.0 as usize)
     }
 
+    /// Adds to the value for a place, which is listed from now on.
     fn add(&mut self, place: usize, change: f64) {
         match self.position(place) {
             Ok(at) => self.values[at].1 += change,
-            Err(at) => {
-                let place = u32::try_from(place).unwrap_or(u32::MAX);
-                self.values.insert(at, (place, change));
-            }
+            Err(at) => self.values.insert(at, (narrow(place), change)),
         }
         let values = self.values.iter().map(|entry| entry.1);
         self.least = values.clone().fold(0.0, f64::min);
@@ -58,63 +50,107 @@ impl JointMultipliers {
     }
 }
 
+pub(super) fn narrow(place: usize) -> u32 {
+    u32::try_from(place).expect("fewer places than 2^32")
+}
+
+/// The multipliers, s. Of many targets, nearly all are those that are equivalent to node potentials.
+#[derive(Debug, Clone)]
+pub(super) struct Multipliers {
+    /// Less each target's node potential: the common part of its inner multipliers.
+    common: Vec<f64>,
+    /// The rest of the inner multipliers, by target: cost of the place as a neighbour of the target. Each
+    /// target lists the start, the end, and all targets with which it shares a joint multiplier.
+    near: Vec<PlaceMultipliers>,
+    /// Outer multipliers, by target: cost for a neighbour of the target when the place lies beyond the
+    /// target.
+    outer: Vec<PlaceMultipliers>,
+    /// Joint multipliers by target and neighbour: cost for the neighbour when the place lies beyond the
+    /// target.
+    joint: HashMap<[usize; 2], PlaceMultipliers, FixedState>,
+}
+
 impl Multipliers {
-    /// All zero.
-    pub(super) fn zero(targets: usize) -> Self {
-        let places = targets + 2;
+    /// The multipliers that are equivalent to node potentials, s.
+    pub(super) fn of_potentials(potentials: &[f64]) -> Self {
+        let targets = potentials.len();
+        let mut ends = PlaceMultipliers::default();
+        ends.add(targets, 0.0);
+        ends.add(targets + 1, 0.0);
         Self {
-            places,
-            near: vec![0.0; targets * places],
-            outer: vec![0.0; targets * places],
+            common: potentials.iter().map(|potential| -potential).collect(),
+            near: vec![ends; targets],
+            outer: vec![PlaceMultipliers::default(); targets],
             joint: HashMap::default(),
         }
     }
 
-    /// The multipliers that are equivalent to node potentials, s.
-    pub(super) fn of_potentials(potentials: &[f64]) -> Self {
-        let mut multipliers = Self::zero(potentials.len());
-        for (row, potential) in multipliers
-            .near
-            .chunks_exact_mut(multipliers.places)
-            .zip(potentials)
-        {
-            row.fill(-potential);
-        }
-        multipliers
+    /// The common part of a target's inner multipliers.
+    pub(super) fn common(&self, target: usize) -> f64 {
+        self.common[target]
     }
 
+    /// The common parts of all targets.
+    pub(super) fn common_parts(&self) -> &[f64] {
+        &self.common
+    }
+
+    /// The rest of its inner multipliers.
+    pub(super) fn near_rest(&self, target: usize) -> &PlaceMultipliers {
+        &self.near[target]
+    }
+
+    /// The inner multiplier `r_j(i)` of a target.
     pub(super) fn near(&self, target: usize, place: usize) -> f64 {
-        self.near[target * self.places + place]
+        self.common[target] + self.near[target].of(place)
     }
 
-    pub(super) fn outer(&self, target: usize, place: usize) -> f64 {
-        self.outer[target * self.places + place]
+    /// The outer multipliers `s_i(h)` of a target.
+    pub(super) fn outer(&self, target: usize) -> &PlaceMultipliers {
+        &self.outer[target]
     }
 
     /// The joint multipliers `w_i(j, h)` of a target `i` for its neighbour `j`, by the place `h` beyond.
-    pub(super) fn joint(&self, target: usize, neighbour: usize) -> &JointMultipliers {
-        let known = self.joint.get(&(target * self.places + neighbour));
-        known.unwrap_or(JointMultipliers::NONE)
+    pub(super) fn joint(&self, target: usize, neighbour: usize) -> &PlaceMultipliers {
+        let known = self.joint.get(&[target, neighbour]);
+        known.unwrap_or(PlaceMultipliers::NONE)
+    }
+
+    /// Whether all joint multipliers are zero.
+    pub(super) fn has_no_joint(&self) -> bool {
+        self.joint.is_empty()
     }
 
     /// Sum of the target's two multipliers for a place, which is subtracted from the edge between
     /// them, s.
     pub(super) fn taken(&self, target: usize, place: usize) -> f64 {
-        self.near(target, place) + self.outer(target, place)
+        self.near(target, place) + self.outer[target].of(place)
+    }
+
+    /// Adds to the common part of the inner multipliers of all targets.
+    pub(super) fn shift(&mut self, changes: impl Iterator<Item = f64>) {
+        for (common, change) in self.common.iter_mut().zip(changes) {
+            *common += change;
+        }
     }
 
     /// Adds changes to single multipliers, times a factor.
     pub(super) fn add(&mut self, changes: &Heading, factor: f64) {
-        for (values, changes) in [
+        for (rows, changes) in [
             (&mut self.near, &changes.near),
             (&mut self.outer, &changes.outer),
         ] {
-            for (&at, change) in changes {
-                values[at] += factor * change;
+            for (&[target, place], change) in changes {
+                rows[target].add(place, factor * change);
             }
         }
-        for (&(pair, beyond), change) in &changes.joint {
-            let joint = self.joint.entry(pair).or_default();
+        for (&[target, neighbour, beyond], change) in &changes.joint {
+            let joint = self.joint.entry([target, neighbour]);
+            let joint = joint.or_insert_with(|| {
+                self.near[target].add(neighbour, 0.0);
+                self.near[neighbour].add(target, 0.0);
+                PlaceMultipliers::default()
+            });
             joint.add(beyond, factor * change);
         }
     }
@@ -124,26 +160,16 @@ impl Multipliers {
 const NEGLIGIBLE: f64 = 1e-4;
 
 /// A direction in the multipliers that is zero nearly everywhere.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Heading {
-    places: usize,
-    near: HashMap<usize, f64, FixedState>,
-    outer: HashMap<usize, f64, FixedState>,
-    /// By target and neighbour, and by place beyond.
-    joint: HashMap<(usize, usize), f64, FixedState>,
+    /// By target and place.
+    near: HashMap<[usize; 2], f64, FixedState>,
+    outer: HashMap<[usize; 2], f64, FixedState>,
+    /// By target, neighbour and place beyond.
+    joint: HashMap<[usize; 3], f64, FixedState>,
 }
 
 impl Heading {
-    /// The direction zero.
-    pub(super) fn zero(targets: usize) -> Self {
-        Self {
-            places: targets + 2,
-            near: HashMap::default(),
-            outer: HashMap::default(),
-            joint: HashMap::default(),
-        }
-    }
-
     /// Multiplies all values by a factor.
     pub(super) fn scale(&mut self, factor: f64) {
         let scale = |value: &mut f64| {
@@ -161,19 +187,19 @@ impl Heading {
         self.joint.clear();
     }
 
-    /// Adds to the value of a joint multiplier.
-    pub(super) fn add_joint(&mut self, [target, neighbour, beyond]: [usize; 3], change: f64) {
-        let pair = target * self.places + neighbour;
-        *self.joint.entry((pair, beyond)).or_default() += change;
-    }
-
-    /// Adds to the value of an inner multiplier.
+    /// Adds to the value of a target's inner multiplier for a place.
     pub(super) fn add_near(&mut self, target: usize, place: usize, change: f64) {
-        *self.near.entry(target * self.places + place).or_default() += change;
+        *self.near.entry([target, place]).or_default() += change;
     }
 
-    /// Adds to the value of an outer multiplier.
+    /// Adds to the value of a target's outer multiplier for a place.
     pub(super) fn add_outer(&mut self, target: usize, place: usize, change: f64) {
-        *self.outer.entry(target * self.places + place).or_default() += change;
+        *self.outer.entry([target, place]).or_default() += change;
+    }
+
+    /// Adds to the value of the joint multiplier of a target for its neighbour and a place beyond the
+    /// target.
+    pub(super) fn add_joint(&mut self, path: [usize; 3], change: f64) {
+        *self.joint.entry(path).or_default() += change;
     }
 }

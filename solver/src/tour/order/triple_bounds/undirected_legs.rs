@@ -88,6 +88,12 @@ impl UndirectedLegs {
         self.edges[a * (self.entry_offsets.len() + 2) + b]
     }
 
+    /// The same for a target and all targets.
+    pub(super) fn edges_at(&self, target: usize) -> &[f64] {
+        let targets = self.entry_offsets.len();
+        &self.edges[target * (targets + 2)..][..targets]
+    }
+
     /// Cost of passing a target between two places, one way and the other, beyond the two edges, s: half the
     /// slacks of the legs and half the coupling gap. The path comes from `entry`: a leg out of it is its own
     /// edge, and no leg leads into it. Infinite for a direction that is not possible.

@@ -15,7 +15,7 @@ use crate::run::stop::StopSignal;
 use std::collections::BTreeSet;
 
 /// Nearest places of each target whose legs are raised first.
-const NEAREST: usize = 8;
+const NEAREST: usize = 6;
 /// Largest number of rounds.
 const MAX_ROUNDS: usize = 24;
 /// A round in which the bound rises by less, relative, is the last one.
@@ -28,10 +28,10 @@ const FIRST_ASCENT: Ascent = Ascent {
 };
 const LATER_ASCENT: Ascent = Ascent {
     first_step: 0.05,
-    steps: 40,
+    steps: 20,
 };
 /// Trees at the end of an ascent whose edges are raised.
-const LAST_TREES: usize = 20;
+const LAST_TREES: usize = 15;
 
 /// Tightens the pair bounds on which bounds and short orders depend.
 pub(super) fn tighten(table: &mut PairTable, model: &dyn TourModel, stop: &StopSignal) {

@@ -49,9 +49,6 @@ const BESIDE_SECOND_ORDERS: AscentEffort = AscentEffort {
     steps: MAX_STEPS,
     ..BESIDE_FIRST_ORDERS
 };
-/// Steps of an ascent in a round times the number of targets, at most: a step takes a time that grows with
-/// the square of that number.
-const STEPS_TIMES_TARGETS: usize = 120_000;
 /// Passes of a round, of which the last one raises the bounds, as does the very first; one where a single order is
 /// evaluated in each.
 const PASSES: u64 = 2;
@@ -240,7 +237,6 @@ impl OrderSearch<'_> {
         let effort = effort.map(|effort| AscentEffort {
             triples: effort.triples * targets,
             fives: effort.fives * targets,
-            steps: effort.steps.min(STEPS_TIMES_TARGETS / targets),
             ..effort
         });
         let fresh = orders.iter().filter(|order| self.tree.is_new(order));

@@ -91,6 +91,8 @@ pub struct TripleBounds {
     near: Ranking,
     /// Places around each target by the target's outer multipliers for them.
     far: Ranking,
+    /// Edges between targets less the multipliers.
+    edge_rows: EdgeRows,
     /// Best lower bound of all tours so far, s.
     root_s: f64,
     /// Whether many targets have had an ascent.
@@ -113,6 +115,7 @@ impl TripleBounds {
             multipliers: Multipliers::of_potentials(trees.potentials()),
             near: Ranking::default(),
             far: Ranking::default(),
+            edge_rows: EdgeRows::default(),
             root_s: 0.0,
             raised: false,
             symmetric: model.is_symmetric(),
@@ -217,17 +220,29 @@ impl TripleBounds {
         self.legs.table()
     }
 
-    /// Updates the rankings and the bound of all tours to the current multipliers.
+    /// Updates the rankings, the edges and the bound of all tours to the current multipliers.
     fn update_root_bound(&mut self) {
-        self.rank(None);
+        self.apply_multipliers(None);
         let all: Vec<usize> = (0..self.targets()).collect();
         self.root_s = self.root_s.max(self.bound(self.legs.table().start(), &all));
     }
 
     /// The minimum spanning tree of some targets; its edges join positions in their list.
     fn tree(&self, targets: &[usize]) -> Vec<Edge> {
-        let mut edges = EdgeRows::new(&self.legs, &self.multipliers, targets);
-        least_tree(targets.len(), |at, weights| edges.fill(at, weights))
+        let fill = |target: usize, weights: &mut [f64]| {
+            let edges = &self.edge_rows;
+            edges.fill(&self.legs, &self.multipliers, target, weights);
+        };
+        if targets.iter().copied().eq(0..self.targets()) {
+            return least_tree(targets.len(), fill);
+        }
+        let mut row = vec![0.0; self.targets()];
+        least_tree(targets.len(), |at, weights| {
+            fill(targets[at], &mut row);
+            for (weight, &other) in weights.iter_mut().zip(targets) {
+                *weight = row[other];
+            }
+        })
     }
 
     /// Sum over the targets of a part of their entry offsets and the costs of their cheapest

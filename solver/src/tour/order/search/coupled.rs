@@ -29,9 +29,9 @@ const MAX_ROUNDS: u64 = 100;
 const ROUNDS_WITHOUT_GAIN: u64 = 2;
 /// Relative rise of the bound in a round that counts as none.
 const MIN_RELATIVE_GAIN: f64 = 2e-4;
-/// Work on the bounds for many targets while the first orders are evaluated, and in a later round. The paths
+/// Work on the bounds for many targets while the first order is evaluated, and in a later round. The paths
 /// are counted per target; those of five places are for when the triples are exhausted.
-const BESIDE_FIRST_ORDERS: AscentEffort = AscentEffort {
+const BESIDE_FIRST_ORDER: AscentEffort = AscentEffort {
     triples: 4,
     fives: 0,
     fives_before_triples_end: false,
@@ -41,13 +41,13 @@ const OF_ROUND: AscentEffort = AscentEffort {
     triples: 12,
     fives: 8,
     steps: MAX_STEPS,
-    ..BESIDE_FIRST_ORDERS
+    ..BESIDE_FIRST_ORDER
 };
 /// The same while the second orders are evaluated, where a round has several passes.
 const BESIDE_SECOND_ORDERS: AscentEffort = AscentEffort {
     triples: 24,
     steps: MAX_STEPS,
-    ..BESIDE_FIRST_ORDERS
+    ..BESIDE_FIRST_ORDER
 };
 /// Passes of a round, of which the last one raises the bounds, as does the very first; one where a single order is
 /// evaluated in each.
@@ -58,7 +58,7 @@ const ORDERS_PER_SEARCH: u64 = 2;
 const KICKS_PER_TARGET: usize = 15;
 const MIN_KICKS: usize = 2_000;
 const MAX_KICKS: usize = 4_000;
-/// Kicks of the searches for the first orders.
+/// Kicks of the searches for the first order.
 const FIRST_KICKS: usize = 1_000;
 /// Largest number of searches in a pass, each from the best order of those before, and the relative excess of
 /// an order over what a search expected from which another one follows.
@@ -143,9 +143,10 @@ impl OrderSearch<'_> {
         let table = self.tree.table();
         let trees = self.tree.spanning_trees()?;
         let mut triple_bounds = TripleBounds::new(self.model, table, trees)?;
-        // At first orders that are short in estimated couplings, beside the first triples.
-        let orders = self.orders_to_evaluate(&mut triple_bounds, 0, FIRST_KICKS);
-        self.evaluate_and_raise(&orders, &mut triple_bounds, Some(BESIDE_FIRST_ORDERS));
+        // At first an order that is short in estimated couplings, beside the first triples.
+        let mut orders = self.orders_to_evaluate(&mut triple_bounds, 0, FIRST_KICKS);
+        orders.truncate(1);
+        self.evaluate_and_raise(&orders, &mut triple_bounds, Some(BESIDE_FIRST_ORDER));
         let targets = self.tree.table().targets();
         let kicks = (KICKS_PER_TARGET * targets).clamp(MIN_KICKS, MAX_KICKS);
         let passes = if orders_evaluated(targets) > 1 {

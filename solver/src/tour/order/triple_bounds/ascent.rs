@@ -245,7 +245,7 @@ impl<'a> Ascent<'a> {
     /// Both relaxed choices for the current multipliers.
     fn choose(&mut self, pool: &SolverPool) -> RelaxedChoices {
         let pool = (self.part.targets.len() >= SHARED_FROM).then_some(pool);
-        self.triple_bounds.rank(pool);
+        self.triple_bounds.apply_multipliers(pool);
         let triple_bounds = &*self.triple_bounds;
         let targets = self.part.targets.len();
         let mut choices = RelaxedChoices {

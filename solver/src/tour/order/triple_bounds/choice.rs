@@ -56,8 +56,8 @@ impl<'a> Part<'a> {
 }
 
 impl TripleBounds {
-    /// Ranks the places around all targets by the current multipliers.
-    pub(super) fn rank(&mut self, pool: Option<&SolverPool>) {
+    /// Ranks the places around all targets by the current multipliers, and takes these from the edges.
+    pub(super) fn apply_multipliers(&mut self, pool: Option<&SolverPool>) {
         let Self {
             multipliers,
             near,
@@ -65,6 +65,7 @@ impl TripleBounds {
             ..
         } = self;
         let targets = self.legs.table().targets();
+        self.edge_rows.update(targets, multipliers);
         let zero = std::iter::repeat_n(0.0, targets + 2);
         far.rank(pool, targets, zero, |of| CostsAround {
             common: 0.0,

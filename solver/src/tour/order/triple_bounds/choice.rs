@@ -78,7 +78,7 @@ impl TripleBounds {
             // Next to an end of the tour it is the target's own outer multiplier for its other neighbour.
             let cost = move |(place, rest): (usize, f64)| {
                 let outer = *least.get(place).unwrap_or(&least[via]);
-                let joint = if place >= targets || multipliers.has_no_joint() {
+                let joint = if place >= targets {
                     0.0
                 } else {
                     multipliers.joint(place, via).least - multipliers.joint(via, place).most

@@ -102,7 +102,8 @@ impl Delays {
     }
 }
 
-fn narrow(number: usize) -> u32 {
+/// A number of a place or row in half the memory.
+pub(super) fn narrow(number: usize) -> u32 {
     u32::try_from(number).expect("fewer places and rows than 2^32")
 }
 

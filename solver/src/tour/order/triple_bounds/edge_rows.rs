@@ -1,6 +1,7 @@
 //! The edges between targets less the multipliers, a row at a time.
 
-use super::multipliers::{Multipliers, narrow};
+use super::coupling_gaps::narrow;
+use super::multipliers::Multipliers;
 use super::undirected_legs::UndirectedLegs;
 
 /// What is subtracted from single edges between targets, s. From most edges only the common parts of the

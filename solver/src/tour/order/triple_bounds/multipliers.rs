@@ -1,5 +1,6 @@
 //! Inner, outer and joint multipliers of the decomposition.
 
+use super::coupling_gaps::narrow;
 use foldhash::fast::FixedState;
 use std::collections::HashMap;
 
@@ -48,10 +49,6 @@ impl PlaceMultipliers {
         self.least = values.clone().fold(0.0, f64::min);
         self.most = values.fold(0.0, f64::max);
     }
-}
-
-pub(super) fn narrow(place: usize) -> u32 {
-    u32::try_from(place).expect("fewer places than 2^32")
 }
 
 /// The multipliers, s. Of many targets, nearly all are those that are equivalent to node potentials.
@@ -114,11 +111,6 @@ impl Multipliers {
     pub(super) fn joint(&self, target: usize, neighbour: usize) -> &PlaceMultipliers {
         let known = self.joint.get(&[target, neighbour]);
         known.unwrap_or(PlaceMultipliers::NONE)
-    }
-
-    /// Whether all joint multipliers are zero.
-    pub(super) fn has_no_joint(&self) -> bool {
-        self.joint.is_empty()
     }
 
     /// Sum of the target's two multipliers for a place, which is subtracted from the edge between

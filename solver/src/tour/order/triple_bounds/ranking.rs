@@ -1,6 +1,6 @@
 //! The places around every target, sorted by cost.
 
-use super::multipliers::narrow;
+use super::coupling_gaps::narrow;
 use crate::run::pool::SolverPool;
 
 /// For every target all other places, sorted by cost. Each target has costs of its own for a few places;

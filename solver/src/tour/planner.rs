@@ -144,8 +144,13 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let bound_tours = || tour_bound(&places, &tours.certified, run.pool, &stop);
     let order = first_order(&places, &stop);
     let few = places.needs_all_legs();
-    // Of many targets nobody asks for all pairs, which would take more memory than what is known of them.
-    let pairs = if few { tour_pairs(&places) } else { Vec::new() };
+    let coupled = !few && (0..scenario.targets().len()).any(|target| tours.couples(target));
+    // Of very many targets nobody asks for all pairs, which would take more memory than what is known of them.
+    let pairs = if few || (!coupled && places.affords_all_bounds()) {
+        tour_pairs(&places)
+    } else {
+        Vec::new()
+    };
     if let Some(order) = order.clone()
         && (places.dynamics.has_momentum() || !(few || stop.is_set()))
     {
@@ -158,7 +163,6 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
         builder.set_certified_bound(bound_tours());
     }
     // The program of a tour of many targets whose legs couple takes longer than to find a better order.
-    let coupled = !few && (0..scenario.targets().len()).any(|target| tours.couples(target));
     let first = order.clone().filter(|_| !coupled);
     let first = first.and_then(|order| first_tour(&tours, order));
     if let Some((first, _)) = &first {
@@ -166,6 +170,7 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
         solver.report_bounds(Some(first.duration_s), builder.certified_bound());
     }
     if !few {
+        tours.certified.raise(&pairs);
         builder.set_certified_bound(bound_tours());
     }
     solver.report_bounds(None, builder.certified_bound());

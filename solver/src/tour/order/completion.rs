@@ -52,12 +52,20 @@ pub enum CompletionBound {
 
 impl CompletionBound {
     /// Prepares the bounds of a pair table for the orders that some rules admit. If the stop signal
-    /// interrupts the exact table, the relaxation is used.
+    /// interrupts the exact table, the relaxation is used: the trees that are known, if any.
     #[must_use]
-    pub fn new(table: &PairTable, rules: &OrderRules, stop: &StopSignal) -> Self {
+    pub fn new(
+        table: &PairTable,
+        rules: &OrderRules,
+        trees: Option<SpanningTrees>,
+        stop: &StopSignal,
+    ) -> Self {
         let few = table.targets() <= MAX_EXACT_TARGETS;
         let exact = few.then(|| SubsetTable::new(table, rules, stop)).flatten();
-        exact.map_or_else(|| Self::Relaxed(SpanningTrees::new(table)), Self::Exact)
+        exact.map_or_else(
+            || Self::Relaxed(trees.unwrap_or_else(|| SpanningTrees::new(table))),
+            Self::Exact,
+        )
     }
 
     /// Lower bound, s, of the path from a place (numbered as in the table) through all remaining
@@ -145,10 +153,10 @@ mod tests {
     fn an_interrupted_exact_table_is_replaced_by_spanning_trees() {
         let table = PairTable::new(&RandomModel::new(14, false, 3));
         let stop = StopSignal::new();
-        let exact = CompletionBound::new(&table, table.rules(), &stop);
+        let exact = CompletionBound::new(&table, table.rules(), None, &stop);
         assert!(matches!(exact, CompletionBound::Exact(_)));
         stop.request();
-        let relaxed = CompletionBound::new(&table, table.rules(), &stop);
+        let relaxed = CompletionBound::new(&table, table.rules(), None, &stop);
         assert!(matches!(relaxed, CompletionBound::Relaxed(_)));
         let all: Vec<usize> = (0..14).collect();
         let bounds = [relaxed, exact].map(|bounds| bounds.bound(&table, table.start(), &all));

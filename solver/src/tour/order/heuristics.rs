@@ -10,10 +10,10 @@ mod path;
 mod tests;
 
 use super::completion::CompletionBound;
-use super::triple_bounds::TripleBounds;
 use super::{PairTable, TourModel};
 use crate::model::order_rules::OrderRules;
 use crate::run::stop::StopSignal;
+pub(super) use cost::{LeastLegs, OrderCost};
 use iterated::IteratedSearch;
 use local_search::OrderTask;
 
@@ -79,10 +79,9 @@ pub(super) struct SearchEffort {
     pub(super) seed: u64,
 }
 
-/// Orders found from a given one that are short in the pair bounds with the known coupling gaps,
-/// best first.
-pub(super) fn shorter_orders(
-    costs: &TripleBounds,
+/// Orders found from a given one that are short by some costs, best first.
+pub(super) fn shorter_orders<C: OrderCost>(
+    costs: &C,
     rules: &OrderRules,
     order: &[usize],
     effort: &SearchEffort,
@@ -91,7 +90,7 @@ pub(super) fn shorter_orders(
     let admits = |order: &[usize]| rules.admits(order);
     let task = OrderTask {
         cost: costs,
-        from: costs.table().start(),
+        from: costs.targets(),
         admits: (!rules.is_free()).then_some(&admits),
     };
     let mut search = IteratedSearch::new(&task, order, effort.alternatives, effort.seed);
@@ -100,9 +99,9 @@ pub(super) fn shorter_orders(
     best.map(|best| best.order.clone()).collect()
 }
 
-/// Estimated duration of an order, s.
-pub(super) fn estimated(costs: &TripleBounds, order: &[usize]) -> f64 {
-    cost::length(costs, costs.table().start(), order)
+/// Duration of an order by some costs, s.
+pub(super) fn estimated<C: OrderCost>(costs: &C, order: &[usize]) -> f64 {
+    cost::length(costs, costs.targets(), order)
 }
 
 /// Orders found by iterated search from the nearest-neighbour order, best first.

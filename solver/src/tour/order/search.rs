@@ -4,6 +4,7 @@ mod coupled;
 mod lagrangian;
 mod reporter;
 mod tree;
+mod uncoupled;
 
 use super::node::SearchNode;
 use super::{
@@ -102,9 +103,12 @@ pub fn search(
             search.reporter.skip(duration_s);
         }
     }
-    let mut end = search
-        .evaluate_candidates()
-        .or_else(|| search.bound_and_improve_orders());
+    let mut end = search.evaluate_candidates();
+    // A search for a bound alone begins at no order, and needs none that is shorter.
+    if known.evaluated.is_some() {
+        end = end.or_else(|| search.improve_uncoupled_orders());
+    }
+    end = end.or_else(|| search.bound_and_improve_orders());
     search.tree.open_root();
     while end.is_none() {
         search.reporter.announce(&search.tree);

@@ -76,6 +76,12 @@ impl PairTable {
         self.open[self.entry([from, to])] || self.open[self.entry([to, from])]
     }
 
+    /// Whether the model can raise the bound of any leg.
+    #[must_use]
+    pub fn has_open(&self) -> bool {
+        self.open.contains(&true)
+    }
+
     /// Lets the model raise the bounds of these legs and of their reverses where it can.
     pub fn raise(&mut self, model: &dyn TourModel, legs: &[[usize; 2]]) {
         let both = legs.iter().flat_map(|&[from, to]| [[from, to], [to, from]]);
@@ -86,6 +92,18 @@ impl PairTable {
         for leg in open {
             self.update(model, leg);
         }
+    }
+
+    /// The same for the legs of these orders; returns whether there were any to raise.
+    pub(super) fn raise_along(&mut self, model: &dyn TourModel, orders: &[Vec<usize>]) -> bool {
+        let mut legs = Vec::new();
+        for order in orders {
+            let path = [&[self.start()], order.as_slice(), &[self.end()]].concat();
+            let along = path.windows(2).map(|leg| [leg[0], leg[1]]);
+            legs.extend(along.filter(|&[from, to]| self.can_raise(from, to)));
+        }
+        self.raise(model, &legs);
+        !legs.is_empty()
     }
 
     /// The place with a number.

@@ -20,60 +20,81 @@ const NEAREST: usize = 6;
 const MAX_ROUNDS: usize = 24;
 /// A round in which the bound rises by less, relative, is the last one.
 const MIN_RELATIVE_GAIN: f64 = 3e-4;
-/// The ascent of a round: that of the first leads near the best potentials, from which the others go
-/// on.
-const FIRST_ASCENT: Ascent = Ascent {
-    first_step: 0.5,
-    steps: 150,
-};
-const LATER_ASCENT: Ascent = Ascent {
-    first_step: 0.05,
-    steps: 20,
-};
+/// Ascents in the order in which they are used, each in rounds until the bound rises no more. The first leads near
+/// the best potentials; the short ones end in many different trees; the long ones come closer to the best.
+const ASCENTS: [Ascent; 3] = [
+    Ascent {
+        first_step: 0.5,
+        steps: 150,
+    },
+    Ascent {
+        first_step: 0.05,
+        steps: 20,
+    },
+    Ascent {
+        first_step: 0.05,
+        steps: 120,
+    },
+];
 /// Trees at the end of an ascent whose edges are raised.
 const LAST_TREES: usize = 15;
 
-/// Tightens the pair bounds on which bounds and short orders depend.
-pub(super) fn tighten(table: &mut PairTable, model: &dyn TourModel, stop: &StopSignal) {
+/// Tightens the pair bounds on which bounds and short orders depend. Returns spanning trees, if there was anything
+/// to tighten: their potentials avoid the legs that stay underestimated, and others might not.
+pub(super) fn tighten(
+    table: &mut PairTable,
+    model: &dyn TourModel,
+    stop: &StopSignal,
+) -> Option<SpanningTrees> {
     let nearest = nearest(table);
     if nearest.is_empty() {
-        return;
+        return None;
     }
     table.raise(model, &nearest);
-    let mut potentials = vec![0.0; table.targets()];
-    let mut ascent = FIRST_ASCENT;
-    let mut before_s = 0.0;
-    for _ in 0..MAX_ROUNDS {
-        if stop.is_set() {
-            break;
-        }
-        let mut open = BTreeSet::new();
-        let mut seen = 0;
-        let trees = SpanningTrees::ascended(table, potentials, ascent, |edges| {
-            seen += 1;
-            if seen + LAST_TREES > ascent.steps {
-                open.extend(edges.iter().filter(|[a, b]| table.can_raise(*a, *b)));
+    let (mut trees, mut rest) = round(table, model, vec![0.0; table.targets()], ASCENTS[0]);
+    for ascent in &ASCENTS[1..] {
+        for _ in 0..MAX_ROUNDS {
+            if stop.is_set() || rest == 0 {
+                break;
             }
-        });
-        let bound_s = trees.whole_s();
-        let is_last = open.is_empty() || bound_s < before_s * (1.0 + MIN_RELATIVE_GAIN);
-        before_s = bound_s;
-        let open: Vec<[usize; 2]> = open.into_iter().collect();
-        table.raise(model, &open);
-        if is_last {
-            break;
+            let before_s = trees.whole_s();
+            (trees, rest) = round(table, model, trees.potentials().to_vec(), *ascent);
+            if trees.whole_s() < before_s * (1.0 + MIN_RELATIVE_GAIN) {
+                break;
+            }
         }
-        potentials = trees.potentials().to_vec();
-        ascent = LATER_ASCENT;
     }
+    Some(trees)
+}
+
+/// An ascent from known potentials. The legs of its last trees are raised; returns the trees and how many legs could
+/// be raised.
+fn round(
+    table: &mut PairTable,
+    model: &dyn TourModel,
+    potentials: Vec<f64>,
+    ascent: Ascent,
+) -> (SpanningTrees, usize) {
+    let mut open = BTreeSet::new();
+    let mut seen = 0;
+    let trees = SpanningTrees::ascended(table, potentials, ascent, |edges| {
+        seen += 1;
+        if seen + LAST_TREES > ascent.steps {
+            open.extend(edges.iter().filter(|[a, b]| table.can_raise(*a, *b)));
+        }
+    });
+    let open: Vec<[usize; 2]> = open.into_iter().collect();
+    table.raise(model, &open);
+    (trees, open.len())
 }
 
 /// A lower bound on all tours, s, from a model's pair bounds.
 pub(crate) fn least_bound(model: &dyn TourModel, stop: &StopSignal) -> f64 {
     let mut table = PairTable::new(model);
-    tighten(&mut table, model, stop);
-    let all: Vec<usize> = (0..table.targets()).collect();
-    SpanningTrees::new(&table).bound(&table, table.start(), &all)
+    let trees = tighten(&mut table, model, stop);
+    trees
+        .unwrap_or_else(|| SpanningTrees::new(&table))
+        .whole_s()
 }
 
 /// The legs between every target and the places nearest to it whose bounds can be raised.

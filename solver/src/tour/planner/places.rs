@@ -20,6 +20,9 @@ use nalgebra::{DVector, Vector3};
 
 /// Number of targets up to which all legs are solved.
 pub(super) const MAX_TARGETS_ALL_LEGS: usize = 40;
+/// Number of targets up to which all legs are proved that do not couple: at most a second of work, from some 25
+/// to 130 microseconds each; with momentum it would be ten times as much.
+const MAX_TARGETS_ALL_BOUNDS: usize = 200;
 
 /// The places of a scenario, with what the legs between them have in common.
 pub(super) struct Places<'a> {
@@ -160,6 +163,12 @@ impl<'a> Places<'a> {
     /// them can be part of a good tour, and only those are on which a bound or a short order depends.
     pub(super) fn needs_all_legs(&self) -> bool {
         self.scenario.targets().len() <= MAX_TARGETS_ALL_LEGS
+    }
+
+    /// Whether the certified bounds of all legs cost little. Searches for orders are then drawn to few legs that
+    /// are underestimated.
+    pub(super) fn affords_all_bounds(&self) -> bool {
+        self.scenario.targets().len() <= MAX_TARGETS_ALL_BOUNDS && !self.dynamics.has_momentum()
     }
 
     /// The attitude of a place; where its roll is free, that of roll 0.

@@ -57,6 +57,19 @@ impl OrderCost for PairTable {
     }
 }
 
+/// The pair bounds alone. Searches are drawn to legs whose bounds can still be raised.
+pub(in crate::tour::order) struct LeastLegs<'a>(pub(in crate::tour::order) &'a PairTable);
+
+impl OrderCost for LeastLegs<'_> {
+    fn targets(&self) -> usize {
+        self.0.targets()
+    }
+
+    fn leg(&self, from: usize, to: usize) -> f64 {
+        self.0.bound(from, to)
+    }
+}
+
 /// Cost of the path from a place through some targets and to the end, s. A coupling at the first
 /// place is not part of it.
 pub(super) fn length<C: OrderCost>(cost: &C, from: usize, order: &[usize]) -> f64 {

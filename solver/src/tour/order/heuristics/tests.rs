@@ -30,7 +30,7 @@ fn iterated_search_shortens_an_order_of_the_same_targets() {
 fn a_completion_begins_with_the_prefix_and_visits_all_targets() {
     for targets in [6, 24] {
         let table = PairTable::new(&RandomModel::new(targets, true, 9));
-        let completion = CompletionBound::new(&table, table.rules(), &StopSignal::new());
+        let completion = CompletionBound::new(&table, table.rules(), None, &StopSignal::new());
         let prefix = [3, 1];
         let remaining: Vec<usize> = (0..targets).filter(|t| !prefix.contains(t)).collect();
         let mut order = complete(&table, &completion, &prefix, &remaining, &StopSignal::new());
@@ -43,7 +43,7 @@ fn a_completion_begins_with_the_prefix_and_visits_all_targets() {
 #[test]
 fn candidates_of_few_targets_are_the_shortest_order_and_its_reverse() {
     let table = PairTable::new(&RandomModel::new(5, true, 3));
-    let completion = CompletionBound::new(&table, table.rules(), &StopSignal::new());
+    let completion = CompletionBound::new(&table, table.rules(), None, &StopSignal::new());
     let orders = candidates(&table, &completion, &StopSignal::new());
     let least = completion.bound(&table, table.start(), &[0, 1, 2, 3, 4]);
     assert!((length(&table, table.start(), &orders[0]) - least).abs() < 1e-9);
@@ -53,7 +53,7 @@ fn candidates_of_few_targets_are_the_shortest_order_and_its_reverse() {
 #[test]
 fn many_targets_have_several_candidates() {
     let table = PairTable::new(&RandomModel::new(24, true, 3));
-    let completion = CompletionBound::new(&table, table.rules(), &StopSignal::new());
+    let completion = CompletionBound::new(&table, table.rules(), None, &StopSignal::new());
     let orders = candidates(&table, &completion, &StopSignal::new());
     assert_eq!(orders.len(), 5);
     let of = |order: &[usize]| length(&table, table.start(), order);

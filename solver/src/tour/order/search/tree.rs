@@ -6,11 +6,10 @@ use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use crate::tour::order::completion::{CompletionBound, SpanningTrees};
 use crate::tour::order::frontier::Frontier;
-use crate::tour::order::heuristics::{self, SearchEffort};
+use crate::tour::order::heuristics::{self, OrderCost, SearchEffort};
 use crate::tour::order::incumbents::Incumbents;
 use crate::tour::order::node::SearchNode;
 use crate::tour::order::tightening::tighten;
-use crate::tour::order::triple_bounds::TripleBounds;
 use crate::tour::order::{
     PairTable, SearchSettings, SearchStatistics, SolvedOrder, TourEvaluation, TourModel,
 };
@@ -59,7 +58,7 @@ impl SearchTree {
         stop: &StopSignal,
     ) -> Self {
         let mut table = PairTable::new(model);
-        tighten(&mut table, model, stop);
+        let trees = tighten(&mut table, model, stop);
         let symmetric = model.is_symmetric();
         let mut rules = table.rules().clone();
         if let (true, Some(nearest)) = (symmetric, nearest_to_start(&table)) {
@@ -68,7 +67,7 @@ impl SearchTree {
         Self {
             symmetric,
             first: first.map(<[usize]>::to_vec),
-            completion: CompletionBound::new(&table, &rules, stop),
+            completion: CompletionBound::new(&table, &rules, trees, stop),
             rules,
             couplings: None,
             root_s: 0.0,
@@ -112,6 +111,11 @@ impl SearchTree {
         &self.table
     }
 
+    /// The same, to raise them.
+    pub(super) fn table_mut(&mut self) -> &mut PairTable {
+        &mut self.table
+    }
+
     /// The spanning trees that bound paths through many targets.
     pub(super) fn spanning_trees(&self) -> Option<&SpanningTrees> {
         match &self.completion {
@@ -153,9 +157,9 @@ impl SearchTree {
 
     /// Orders that are short by some costs, best first. The search begins at a given order, else at the best
     /// evaluated one.
-    pub(super) fn short_orders(
+    pub(super) fn short_orders<C: OrderCost>(
         &self,
-        costs: &TripleBounds,
+        costs: &C,
         from: Option<&[usize]>,
         effort: &SearchEffort,
         stop: &StopSignal,

@@ -134,7 +134,7 @@ fn heuristic_orders_and_completions_satisfy_the_rules() {
         let mut model = RandomModel::new(targets, seed % 2 == 0, seed);
         model.rules = feasible_rules(targets, &mut random);
         let table = PairTable::new(&model);
-        let completion = CompletionBound::new(&table, table.rules(), &StopSignal::new());
+        let completion = CompletionBound::new(&table, table.rules(), None, &StopSignal::new());
         let orders = candidates(&table, &completion, &stop);
         assert!(!orders.is_empty());
         for order in &orders {

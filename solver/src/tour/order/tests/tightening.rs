@@ -208,7 +208,7 @@ fn the_bound_of_all_tours_needs_few_pairs() {
         let expected = SpanningTrees::new(&table).bound(&table, table.start(), &all);
         let opened = Opened::new(points);
         let bound = least_bound(&opened, &StopSignal::new());
-        assert!((bound / expected - 1.0).abs() < 2e-3, "{bound} {expected}");
+        assert!((bound / expected - 1.0).abs() < 5e-4, "{bound} {expected}");
         let pairs = 120 * 121;
         assert!(
             opened.raised() * 5 < pairs,
@@ -226,6 +226,34 @@ fn open_pairs_hide_no_order() {
         let found = run(&opened, &SearchSettings::default());
         assert_eq!(found.best.as_ref(), Some(&expected[0]));
         assert!(found.complete && opened.raised() > 0);
+    }
+}
+
+#[test]
+fn an_order_of_legs_that_do_not_couple_is_short_among_all_of_them() {
+    let settings = SearchSettings {
+        node_limit: Some(0),
+        ..SearchSettings::default()
+    };
+    for seed in 0..4 {
+        let known = run(&Points::new(100, false, seed), &settings);
+        let opened = Opened::new(Points::new(100, false, seed));
+        let first: Vec<usize> = (0..100).collect();
+        let orders = KnownOrders {
+            evaluated: Some((&first, opened.tour(&first))),
+            first: Some(&first),
+        };
+        let stop = StopSignal::new();
+        let found = search(&opened, orders, &settings, &pool(2), &stop, &Silent);
+        let duration_s = |found: SearchResult| found.best.expect("an order").duration_s;
+        let (found_s, known_s) = (duration_s(found), duration_s(known));
+        assert!(found_s < known_s * (1.0 + 1e-9), "{found_s} {known_s}");
+        let pairs = 100 * 101;
+        assert!(
+            opened.raised() * 4 < pairs,
+            "{} of {pairs}",
+            opened.raised()
+        );
     }
 }
 

@@ -208,7 +208,7 @@ fn the_bound_of_all_tours_needs_few_pairs() {
         let expected = SpanningTrees::new(&table).bound(&table, table.start(), &all);
         let opened = Opened::new(points);
         let bound = least_bound(&opened, &StopSignal::new());
-        assert!((bound / expected - 1.0).abs() < 5e-4, "{bound} {expected}");
+        assert!((bound / expected - 1.0).abs() < 2e-3, "{bound} {expected}");
         let pairs = 120 * 121;
         assert!(
             opened.raised() * 5 < pairs,

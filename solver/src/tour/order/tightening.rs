@@ -20,8 +20,9 @@ const NEAREST: usize = 6;
 const MAX_ROUNDS: usize = 24;
 /// A round in which the bound rises by less, relative, is the last one.
 const MIN_RELATIVE_GAIN: f64 = 3e-4;
-/// Ascents in the order in which they are used, each in rounds until the bound rises no more. The first leads near
-/// the best potentials; the short ones end in many different trees; the long ones come closer to the best.
+/// Ascents in the order in which they are used. The first, a single one, leads near the best potentials; short and
+/// long ones follow, each in rounds until the bound rises no more: short ones end in many different trees, long ones
+/// come closer to the best potentials.
 const ASCENTS: [Ascent; 3] = [
     Ascent {
         first_step: 0.5,

@@ -151,13 +151,12 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     } else {
         Vec::new()
     };
-    let mut has_plan = false;
     if let Some(order) = order.clone()
         && (places.dynamics.has_momentum() || !(few || stop.is_set()))
     {
         // With momentum the program of a first tour may take long or fail; with many targets it takes
         // long.
-        has_plan = builder.construct(order);
+        builder.construct(order);
     }
     if few {
         tours.certified.raise(&pairs);
@@ -165,7 +164,9 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     }
     // The program of a tour of many targets whose legs couple takes longer than to find a better order; without
     // any plan it is solved all the same.
-    let first = order.clone().filter(|_| !(coupled && has_plan));
+    let first = order
+        .clone()
+        .filter(|_| !(coupled && builder.has_constructed()));
     let first = first.and_then(|order| first_tour(&tours, order));
     if let Some((first, _)) = &first {
         builder.announce(first);

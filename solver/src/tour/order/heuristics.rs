@@ -79,18 +79,19 @@ pub(super) struct SearchEffort {
     pub(super) seed: u64,
 }
 
-/// Orders found from a given one that are short by some costs, best first.
+/// Orders of the targets after a prefix that are short by some costs, best first. The search begins
+/// at the given order of them, which must be admitted.
 pub(super) fn shorter_orders<C: OrderCost>(
     costs: &C,
     rules: &OrderRules,
-    order: &[usize],
+    (prefix, order): (&[usize], &[usize]),
     effort: &SearchEffort,
     stop: &StopSignal,
 ) -> Vec<Vec<usize>> {
-    let admits = |order: &[usize]| rules.admits(order);
+    let admits = |order: &[usize]| rules.admits(&[prefix, order].concat());
     let task = OrderTask {
         cost: costs,
-        from: costs.targets(),
+        from: prefix.last().copied().unwrap_or(costs.targets()),
         admits: (!rules.is_free()).then_some(&admits),
     };
     let mut search = IteratedSearch::new(&task, order, effort.alternatives, effort.seed);
@@ -113,8 +114,12 @@ fn searched(
     stop: &StopSignal,
 ) -> Vec<Vec<usize>> {
     let built = nearest_neighbours(table, &[], all);
-    let kicks = max_kicks.min(CANDIDATE_KICKS * all.len());
-    iterated(table, &[], &built, alternatives, kicks, stop)
+    let effort = SearchEffort {
+        kicks: max_kicks.min(CANDIDATE_KICKS * all.len()),
+        alternatives,
+        seed: SEED,
+    };
+    shorter_orders(table, table.rules(), (&[], &built), &effort, stop)
 }
 
 /// An order that completes a prefix by a short path. An admitted order must begin with the prefix.
@@ -131,34 +136,17 @@ pub(super) fn complete(
         }
         CompletionBound::Relaxed(_) => {
             let built = nearest_neighbours(table, prefix, remaining);
-            let kicks = COMPLETION_KICKS * built.len();
-            let mut found = iterated(table, prefix, &built, 0, kicks, stop);
-            found.pop().unwrap_or(built)
+            let effort = SearchEffort {
+                kicks: COMPLETION_KICKS * built.len(),
+                alternatives: 0,
+                seed: SEED,
+            };
+            let order = (prefix, built.as_slice());
+            let found = shorter_orders(table, table.rules(), order, &effort, stop);
+            found.into_iter().next().unwrap_or(built)
         }
     };
     [prefix, &completion].concat()
-}
-
-/// The best order of an iterated search from an admitted one and so many alternatives, best first.
-fn iterated(
-    table: &PairTable,
-    prefix: &[usize],
-    order: &[usize],
-    alternatives: usize,
-    kicks: usize,
-    stop: &StopSignal,
-) -> Vec<Vec<usize>> {
-    let rules = table.rules();
-    let admits = |order: &[usize]| rules.admits(&[prefix, order].concat());
-    let task = OrderTask {
-        cost: table,
-        from: table.last_place(prefix),
-        admits: (!rules.is_free()).then_some(&admits),
-    };
-    let mut search = IteratedSearch::new(&task, order, alternatives, SEED);
-    search.run(kicks, stop);
-    let best = search.best().iter();
-    best.map(|best| best.order.clone()).collect()
 }
 
 /// The nearest-neighbour order after a prefix: the next target is the nearest one, the smallest

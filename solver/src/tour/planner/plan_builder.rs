@@ -99,14 +99,14 @@ impl<'a> PlanBuilder<'a> {
             .filter(|_| self.tours.legs.bounds_are_trusted())
     }
 
-    /// Constructs a flight of an order, leg by leg, and reports it. Returns false when a leg cannot
+    /// Constructs a flight of an order, leg by leg, and reports it; there is none when a leg cannot
     /// be constructed or the flight fails its verification.
-    pub(super) fn construct(&mut self, order: Vec<usize>) -> bool {
+    pub(super) fn construct(&mut self, order: Vec<usize>) {
         let route = self.tours.places.route(&order, true);
         let segments = constructed(self.tours.places, &route);
         let Some(flight) = segments.and_then(|segments| self.verify_flight(&route, &segments).ok())
         else {
-            return false;
+            return;
         };
         let best = SolvedOrder {
             duration_s: flight.flight.total_time_s,
@@ -116,7 +116,11 @@ impl<'a> PlanBuilder<'a> {
         self.announce(&best);
         self.drop_flight();
         self.constructed = Some((best, flight));
-        true
+    }
+
+    /// Whether [`PlanBuilder::construct`] has succeeded.
+    pub(super) fn has_constructed(&self) -> bool {
+        self.constructed.is_some()
     }
 
     /// The plan of the constructed flight, for a search that ends without an order.

@@ -5,7 +5,7 @@ mod moves;
 mod searches;
 
 use super::cost::length;
-use super::{candidates, complete, iterated, nearest_neighbours};
+use super::{SearchEffort, candidates, complete, nearest_neighbours, shorter_orders};
 use crate::run::stop::StopSignal;
 use crate::tour::order::PairTable;
 use crate::tour::order::completion::CompletionBound;
@@ -18,7 +18,14 @@ fn iterated_search_shortens_an_order_of_the_same_targets() {
         let start = table.start();
         let all: Vec<usize> = (0..30).collect();
         let built = nearest_neighbours(&table, &[], &all);
-        let improved = iterated(&table, &[], &built, 0, 300, &StopSignal::new()).remove(0);
+        let effort = SearchEffort {
+            kicks: 300,
+            alternatives: 0,
+            seed,
+        };
+        let orders = (&[][..], built.as_slice());
+        let stop = StopSignal::new();
+        let improved = shorter_orders(&table, table.rules(), orders, &effort, &stop).remove(0);
         assert!(length(&table, start, &improved) < length(&table, start, &built));
         let mut targets = improved;
         targets.sort_unstable();

@@ -155,8 +155,8 @@ impl SearchTree {
         self.first.is_some() || self.best_s().is_some()
     }
 
-    /// Orders that are short by some costs, best first. The search begins at a given order, else at the best
-    /// evaluated one.
+    /// Orders that are short by some costs, best first. The search begins at a given order, else at
+    /// the best evaluated one.
     pub(super) fn short_orders<C: OrderCost>(
         &self,
         costs: &C,
@@ -169,7 +169,7 @@ impl SearchTree {
         let Some(order) = from.or(best).or(self.first.as_deref()) else {
             return Vec::new();
         };
-        heuristics::shorter_orders(costs, self.table.rules(), order, effort, stop)
+        heuristics::shorter_orders(costs, self.table.rules(), (&[], order), effort, stop)
     }
 
     /// Whether an order has not been evaluated.

@@ -185,19 +185,18 @@ fn plans_without_certified_bounds_are_not_confirmed() {
 }
 
 #[test]
-fn bounds_with_stored_momentum_are_not_checked() {
+fn bounds_with_stored_momentum_are_confirmed_and_larger_ones_rejected() {
     let solved = Solved::of(&fixture_json("pyramid-momentum-bias.json"));
-    let ended = solved.certify(&solved.plan, &[]).expect_code(3);
-    let found = ended.json();
-    assert_eq!(found["confirmed"], false);
-    assert_eq!(verdicts(&found), (vec!["not_checked"; 4], "not_checked"));
-    let told = found["tour"]["reason"].as_str().expect("a text");
-    assert!(told.contains("momentum"), "{told}");
-    let summary = solved.certify(&solved.plan, &["--summary"]).expect_code(3);
-    assert!(
-        summary.stdout.starts_with("NOT CONFIRMED: 0 of 5 bounds"),
-        "{summary:?}"
-    );
+    let found = solved.certify(&solved.plan, &[]).expect_code(0).json();
+    assert_eq!(found["confirmed"], true);
+    assert_eq!(verdicts(&found), (vec!["confirmed"; 4], "confirmed"));
+    let bound = solved.plan["legs"][1]["certified_lower_bound_s"].as_f64();
+    let more = json!(bound.expect("a bound") * 1.001);
+    let plan = solved.with("/legs/1/certified_lower_bound_s", more);
+    let found = solved.certify(&plan, &[]).expect_code(3).json();
+    assert_eq!(verdicts(&found).0[1], "rejected");
+    let told = found["legs"][1]["reason"].as_str().expect("a text");
+    assert!(told.contains("not excluded"), "{told}");
 }
 
 #[test]

@@ -51,7 +51,7 @@ mod momentum;
 mod norms;
 mod rolls;
 
-use crate::bounds::kinematic::certificate::Certificate;
+use crate::bounds::kinematic::certificate::{Certificate, DriftCertificate};
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use crate::bounds::kinematic::ramps::SlewBound;
 use crate::bounds::kinematic::rate_envelope::RateEnvelope;
@@ -72,7 +72,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Version of the mathematics of the bounds. A stored bound of another version is not used: raise it
 /// whenever a bound that was given before could be above one that is given now.
-pub const VERSION: u32 = 4;
+pub const VERSION: u32 = 5;
 
 /// Tolerances are given away with a thousandth more, far above the rounding of turns and the errors of
 /// the checker's integration.
@@ -199,13 +199,8 @@ impl CertifiedBounds {
         if from.roll.is_some() || to.roll.is_some() {
             return least_over_rolls(ends, |ends, halves| self.around_rolls(ends, halves));
         }
-        if let Some(bounds) = &self.momentum {
-            let slew = HeldSlew {
-                turn: from.attitude.turn_to(&to.attitude),
-                held: ends.map(|end| end.attitude.to_body(*momentum)),
-                ends: ends.map(rate_limits),
-            };
-            return bounds.leg(&slew, TOLERANCE);
+        if self.momentum.is_some() {
+            return Some(self.drift_certificate(from, to, momentum)?.duration_s);
         }
         Some(self.around_rolls(ends, [0.0; 2])?.bound_s)
     }
@@ -246,6 +241,26 @@ impl CertifiedBounds {
         let strongest = alternatives.strongest(TOLERANCE)?;
         let certificate = alternatives.certificate(&strongest, TOLERANCE);
         Some((frames[strongest.alternative].axes, certificate))
+    }
+
+    /// The certificate of the bound [`Self::leg`] with momentum, N m s, in the frame of the two attitudes; `None`
+    /// without, where nothing is proved, and with a free roll, for which there is no verification.
+    pub(crate) fn drift_certificate(
+        &self,
+        from: &Waypoint,
+        to: &Waypoint,
+        momentum: &Vector3<f64>,
+    ) -> Option<DriftCertificate> {
+        if from.roll.is_some() || to.roll.is_some() {
+            return None;
+        }
+        let ends = [from, to];
+        let slew = HeldSlew {
+            turn: from.attitude.turn_to(&to.attitude),
+            held: ends.map(|end| end.attitude.to_body(*momentum)),
+            ends: ends.map(rate_limits),
+        };
+        self.momentum.as_ref()?.leg(&slew, TOLERANCE)
     }
 
     /// The largest bound that norms prove on slews between two waypoints that turn by an angle, rad, as far as signs

@@ -49,6 +49,8 @@
 //!    (`near_axis`).
 //! 2. **The link** to the duration: `s(T)` is bounded from above, and what missed attitudes save too
 //!    (`link`).
+//! 3. **With stored momentum** ([`verify_drift`]) both for every range of durations that is excluded, and that
+//!    the ranges leave no gap.
 //!
 //! On a part of half-width `b` about its middle, the interior is enclosed by Taylor's theorem, with
 //! the derivative at the middle in intervals and, for a product of turns, a second derivative of at
@@ -58,6 +60,7 @@
 //! Nearly equal rates are separated by raising them, by 4e-7 at most, which makes the proved
 //! statement stronger; certificates leave a margin of 2e-6.
 
+mod drift;
 mod dwelling;
 mod link;
 mod near_axis;
@@ -72,8 +75,10 @@ mod turn;
 
 use crate::bounds::interval::Interval;
 use crate::bounds::kinematic::certificate::{Certificate, CertifiedTurn};
+use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use crate::bounds::polytope::certificate::{FramePremise, NormCertificate};
 use crate::bounds::polytope::trapezoid::Trapezoid;
+pub use drift::verify_drift;
 use nalgebra::Vector3;
 use polytope::PolytopeProver;
 use prover::Prover;
@@ -96,6 +101,12 @@ pub enum Rejection {
         least_s: f64,
         /// Sum that the bound on the duration requires, s.
         needed_s: f64,
+    },
+    /// Shorter durations than the bound are not excluded.
+    #[error("durations from {excluded_s} s on are not excluded")]
+    Open {
+        /// The least of them, s.
+        excluded_s: f64,
     },
     /// Neither a proof nor a counterexample was found.
     #[error("not proved: {reason}")]
@@ -131,24 +142,10 @@ pub fn verify(certificate: &Certificate) -> Result<(), Rejection> {
         attitude_tolerance_rad,
         duration_s,
     } = certificate;
-    let malformed = |what| Err(Rejection::Malformed { what });
-    let positive = |v: &Vector3<f64>| v.iter().all(|x| x.is_finite() && *x > 0.0);
-    if !positive(&limits.rates_rad_s) || !positive(&limits.accelerations_rad_s2) {
-        return malformed("limits must be positive and finite");
-    }
-    let ends_valid = |v: &Vector3<f64>| v.iter().all(|x| *x >= 0.0);
-    if !ends_valid(&ends.begin_rad_s) || !ends_valid(&ends.end_rad_s) {
-        return malformed("end rates must not be negative");
-    }
-    if !turns.iter().all(|turn| turn.least_s.is_finite()) || !duration_s.is_finite() {
-        return malformed("times must be finite");
-    }
-    if !(attitude_tolerance_rad.is_finite() && *attitude_tolerance_rad >= 0.0) {
-        return malformed("the angle of missed attitudes must be finite and not negative");
-    }
-    let Some(mut prover) = Prover::new(box_rad_s) else {
-        return malformed("the box must be positive and finite");
-    };
+    check_limits(limits, ends)?;
+    check_times(turns.iter().map(|turn| turn.least_s).chain([*duration_s]))?;
+    check_missed(*attitude_tolerance_rad)?;
+    let mut prover = prover_within(box_rad_s)?;
     if *duration_s > 0.0 {
         let missed_s = link::missed(box_rad_s, *attitude_tolerance_rad);
         let least_s = turns.iter().fold(Interval::ZERO, |sum, turn| {
@@ -184,29 +181,18 @@ pub fn verify_norm(certificate: &NormCertificate) -> Result<(), Rejection> {
         attitude_tolerance_rad,
         duration_s,
     } = certificate;
-    let malformed = |what| Err(Rejection::Malformed { what });
-    let positive = |v: &Vector3<f64>| v.iter().all(|x| x.is_finite() && *x > 0.0);
-    let limited = |limits: &Trapezoid| {
-        let steep = [limits.most, limits.slope];
-        steep.iter().all(|x| x.is_finite() && *x > 0.0) && limits.ends.iter().all(|x| *x >= 0.0)
-    };
-    let framed = |frame: &FramePremise| {
-        let FramePremise { axes, limits, ends } = frame;
-        let ends = ends.begin_rad_s.iter().chain(&ends.end_rad_s);
-        axes.iter().all(|x| x.is_finite())
-            && positive(&limits.rates_rad_s)
-            && positive(&limits.accelerations_rad_s2)
-            && ends.copied().all(|x| x >= 0.0)
-    };
-    if !facets.iter().all(|facet| limited(&facet.share)) || !frame.iter().all(framed) {
-        return malformed("limits must be positive and finite, end rates not negative");
+    for Trapezoid { most, slope, ends } in facets.iter().map(|facet| &facet.share) {
+        check_positive([most, slope])?;
+        check_not_negative(ends)?;
     }
-    if !turn.least_s.is_finite() || !duration_s.is_finite() {
-        return malformed("times must be finite");
+    if let Some(FramePremise { axes, limits, ends }) = frame {
+        if !axes.iter().all(|x| x.is_finite()) {
+            return malformed("axes must be finite");
+        }
+        check_limits(limits, ends)?;
     }
-    if !(attitude_tolerance_rad.is_finite() && *attitude_tolerance_rad >= 0.0) {
-        return malformed("the angle of missed attitudes must be finite and not negative");
-    }
+    check_times([turn.least_s, *duration_s])?;
+    check_missed(*attitude_tolerance_rad)?;
     let normals: Vec<_> = facets.iter().map(|facet| facet.normal).collect();
     let Some(prover) = PolytopeProver::new(&normals) else {
         return malformed("the facets must enclose a polytope in general position");
@@ -229,17 +215,54 @@ pub fn verify_norm(certificate: &NormCertificate) -> Result<(), Rejection> {
 ///
 /// Why the time is not confirmed.
 pub fn verify_turn(box_rad_s: &Vector3<f64>, certified: &CertifiedTurn) -> Result<(), Rejection> {
-    let Some(mut prover) = Prover::new(box_rad_s) else {
-        return Err(Rejection::Malformed {
-            what: "the box must be positive and finite",
-        });
-    };
-    if !certified.least_s.is_finite() {
-        return Err(Rejection::Malformed {
-            what: "times must be finite",
-        });
+    check_times([certified.least_s])?;
+    prover_within(box_rad_s)?.prove(&certified.turn, certified.least_s)
+}
+
+fn malformed<T>(what: &'static str) -> Result<T, Rejection> {
+    Err(Rejection::Malformed { what })
+}
+
+fn check_limits(limits: &SlewLimits, ends: &EndRates) -> Result<(), Rejection> {
+    check_positive(
+        limits
+            .rates_rad_s
+            .iter()
+            .chain(&limits.accelerations_rad_s2),
+    )?;
+    check_not_negative(ends.begin_rad_s.iter().chain(&ends.end_rad_s))
+}
+
+fn check_positive<'a>(limits: impl IntoIterator<Item = &'a f64>) -> Result<(), Rejection> {
+    if limits.into_iter().all(|x| x.is_finite() && *x > 0.0) {
+        return Ok(());
     }
-    prover.prove(&certified.turn, certified.least_s)
+    malformed("limits must be positive and finite")
+}
+
+fn check_not_negative<'a>(ends: impl IntoIterator<Item = &'a f64>) -> Result<(), Rejection> {
+    if ends.into_iter().all(|x| *x >= 0.0) {
+        return Ok(());
+    }
+    malformed("end rates must not be negative")
+}
+
+fn check_times(times: impl IntoIterator<Item = f64>) -> Result<(), Rejection> {
+    if times.into_iter().all(f64::is_finite) {
+        return Ok(());
+    }
+    malformed("times must be finite")
+}
+
+fn check_missed(attitude_tolerance_rad: f64) -> Result<(), Rejection> {
+    if attitude_tolerance_rad.is_finite() && attitude_tolerance_rad >= 0.0 {
+        return Ok(());
+    }
+    malformed("the angle of missed attitudes must be finite and not negative")
+}
+
+fn prover_within(box_rad_s: &Vector3<f64>) -> Result<Prover, Rejection> {
+    Prover::new(box_rad_s).map_or_else(|| malformed("the box must be positive and finite"), Ok)
 }
 
 impl Rejection {

@@ -40,7 +40,7 @@ pub(super) struct LegDocument<'a> {
     duration_s: Number,
     /// No slew takes less, s, between these two places under the conditions that the scenario sets
     /// there, proved, as part of whatever tour: rates that the plan chose where they are free are not
-    /// used. `null` where nothing is proved: with stored momentum, or without limits of speed.
+    /// used. `null` where nothing is proved: without limits of speed.
     certified_lower_bound_s: Option<Number>,
     /// The slew about the eigenaxis, rest to rest; `null` where that cannot be flown.
     eigenaxis_duration_s: Option<Number>,

@@ -32,7 +32,8 @@ mod growth;
 mod tests;
 
 use super::{BodyFrame, MAX_PREPARED, MISSED_ATTITUDE, MISSED_RATE, exceeded};
-use crate::bounds::kinematic::drift::{DriftingSlew, drifting_lower_bound_s};
+use crate::bounds::kinematic::certificate::{DriftCertificate, ExcludedDurations};
+use crate::bounds::kinematic::drift::{DriftingSlew, Exclusion, drifting_bound};
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use crate::bounds::kinematic::ramps::SlewBound;
 use crate::bounds::kinematic::rate_envelope::RateEnvelope;
@@ -110,18 +111,31 @@ impl MomentumBounds {
         without_drift.map(|drifting| drifting.frame)
     }
 
-    /// Lower bound, s, on the duration of a slew; `None` without limits of speed.
-    pub(super) fn leg(&self, slew: &HeldSlew, tolerance: f64) -> Option<f64> {
+    /// Lower bound on the duration of a slew, with its premises; `None` without limits of speed.
+    pub(super) fn leg(&self, slew: &HeldSlew, tolerance: f64) -> Option<DriftCertificate> {
         if self.frames.is_empty() {
             return None;
         }
-        let mut seen: Vec<_> = self.frames.iter().filter_map(|f| f.see(slew)).collect();
-        let known = drifting_lower_bound_s(&seen, 0.0, (FIRST_TRIED, tolerance));
-        let fitted: Vec<_> = self.keys(slew, known).map(|key| self.fitted(key)).collect();
+        let view = |frame| DriftingFrame::see(frame, slew).map(|seen| (frame, seen));
+        let (mut frames, mut seen): (Vec<_>, Vec<_>) = self.frames.iter().filter_map(view).unzip();
+        let first = drifting_bound(&seen, 0.0, (FIRST_TRIED, tolerance));
+        let keys = self.keys(slew, first.duration_s);
+        let fitted: Vec<_> = keys.map(|key| self.fitted(key)).collect();
         let across = fitted.iter().flat_map(|frames| frames.iter().flatten());
-        seen.extend(across.filter_map(|frame| frame.see(slew)));
-        let most = (MAX_TRIED, tolerance);
-        Some(drifting_lower_bound_s(&seen, known, most))
+        for (frame, slew) in across.filter_map(view) {
+            frames.push(frame);
+            seen.push(slew);
+        }
+        let last = drifting_bound(&seen, first.duration_s, (MAX_TRIED, tolerance));
+        let steps = first.steps.iter().chain(&last.steps);
+        let needed = steps.take_while(|step| step.range_s[0] < last.duration_s);
+        Some(DriftCertificate {
+            steps: needed
+                .map(|step| frames[step.view].premises(&seen[step.view], step))
+                .collect(),
+            attitude_tolerance_rad: MISSED_ATTITUDE,
+            duration_s: last.duration_s,
+        })
     }
 
     /// Frames across the facets that a turn meets, and across those that what is left of it after a time, s,
@@ -196,6 +210,22 @@ impl DriftingFrame {
             from_rest,
             bound: SlewBound::new(from_rest, EndRates::at_rest())?.missing(MISSED_ATTITUDE),
         })
+    }
+
+    /// What the exclusion of durations in these axes rests on.
+    fn premises(&self, slew: &DriftingSlew<'_>, step: &Exclusion) -> ExcludedDurations {
+        let [from_s, to_s] = step.range_s;
+        ExcludedDurations {
+            axes: self.frame.axes,
+            share: self.share,
+            drifts_rad_s: [slew.drift, slew.turn.to_body(slew.drift)],
+            limits: slew.envelope.limits,
+            ends: slew.envelope.ends,
+            box_rad_s: step.box_rad_s,
+            left: step.left,
+            from_s,
+            to_s,
+        }
     }
 
     /// A slew in these axes; `None` where its turn is no number.

@@ -18,12 +18,12 @@
 //!
 //! Where attitudes are missed by `E_0` and `E_1`, the drift in body axes is `E_0^T W_0` at the
 //! beginning, and the turn to be made is `E_0^T Q(T) E_1`: as much less counts as without a drift.
-
 //!
 //! Of several boxes, in several axes and relative to several drifts, those are tried that promise most, as in
 //! [`super::strongest`]: what one excludes is where the others go on, and a box is left out in which a known motion
 //! makes the turn that is left in what it allows.
 
+use super::certificate::CertifiedTurn;
 use super::ramps::{DEFLATION, SlewBound, TriedBox, rounded_down};
 use super::rate_envelope::RateEnvelope;
 use super::strongest::{SMALL_GAIN, quick_times};
@@ -49,25 +49,56 @@ pub(crate) struct DriftingSlew<'a> {
     pub(crate) envelope: RateEnvelope,
 }
 
-/// Lower bound, s, on the duration of a slew that is seen in several ways, of which shorter durations than
+/// Durations that a box excludes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Exclusion {
+    /// Number of the view that has the box.
+    pub(crate) view: usize,
+    /// The box of rates, rad/s.
+    pub(crate) box_rad_s: Vector3<f64>,
+    /// What is left of the turn for the least of the durations.
+    pub(crate) left: CertifiedTurn,
+    /// The least and the greatest of them, s.
+    pub(crate) range_s: [f64; 2],
+}
+
+/// A lower bound on the duration of a slew.
+#[derive(Debug)]
+pub(crate) struct DriftBound {
+    /// The bound, s.
+    pub(crate) duration_s: f64,
+    /// The durations that it rests on, from the known ones upwards.
+    pub(crate) steps: Vec<Exclusion>,
+}
+
+/// Lower bound on the duration of a slew that is seen in several ways, of which shorter durations than
 /// `known_s` are excluded already, by whatever argument. Where none are, the first view should have no drift.
 ///
 /// The result is valid for any number of least times that are computed at most, and any tolerance of them.
-pub(crate) fn drifting_lower_bound_s(
+pub(crate) fn drifting_bound(
     seen: &[DriftingSlew<'_>],
     known_s: f64,
     (mut left, tolerance): (usize, f64),
-) -> f64 {
+) -> DriftBound {
     let candidates = most_promising_first(seen, known_s);
-    let mut excluded = known_s;
+    let (mut excluded, mut steps) = (known_s, Vec::new());
     for _ in 0..MAX_ROUNDS {
         let before = excluded;
-        for (slew, tried) in &candidates {
+        for (view, tried) in &candidates {
+            let slew = &seen[*view];
             while left > 0 && slew.promises_more(tried, excluded) {
                 left -= 1;
-                let next = slew.raised(tried, excluded, tolerance);
+                let (turn, next) = slew.raised(tried, excluded, tolerance);
                 let gained = next > excluded * (1.0 + SMALL_GAIN);
-                excluded = next;
+                if next > excluded * (1.0 + DEFLATION) {
+                    steps.push(Exclusion {
+                        view: *view,
+                        box_rad_s: tried.rates,
+                        left: turn,
+                        range_s: [excluded, next],
+                    });
+                    excluded = next;
+                }
                 if !gained {
                     break;
                 }
@@ -77,15 +108,15 @@ pub(crate) fn drifting_lower_bound_s(
             break;
         }
     }
-    rounded_down(excluded * (1.0 - DEFLATION)).max(known_s)
+    DriftBound {
+        duration_s: rounded_down(excluded).max(known_s),
+        steps,
+    }
 }
 
-/// All boxes with the views that have them, by the ratio of the time that the turn is expected to take to that which
+/// All boxes with the numbers of the views that have them, by the ratio of the time that the turn is expected to take to that which
 /// they allow in a duration that all share.
-fn most_promising_first<'a>(
-    seen: &'a [DriftingSlew<'a>],
-    known_s: f64,
-) -> Vec<(&'a DriftingSlew<'a>, &'a TriedBox)> {
+fn most_promising_first<'a>(seen: &[DriftingSlew<'a>], known_s: f64) -> Vec<(usize, &'a TriedBox)> {
     let Some(first) = seen.first() else {
         return Vec::new();
     };
@@ -98,8 +129,10 @@ fn most_promising_first<'a>(
     };
     let boxes = seen
         .iter()
-        .flat_map(|slew| slew.bound.boxes.iter().map(move |tried| (slew, tried)));
-    let promise = |(slew, tried): &(&DriftingSlew<'_>, &TriedBox)| {
+        .enumerate()
+        .flat_map(|(view, slew)| slew.bound.boxes.iter().map(move |tried| (view, tried)));
+    let promise = |(view, tried): &(usize, &TriedBox)| {
+        let slew = &seen[*view];
         let allowed = slew.envelope.effective(&tried.rates, reference);
         slew.expected_s(tried, reference) / allowed
     };
@@ -129,19 +162,20 @@ impl DriftingSlew<'_> {
         attained - self.bound.missed_time(tried) > needed
     }
 
-    /// The duration that a box excludes with all shorter ones, s, once those below another one are.
-    fn raised(&self, tried: &TriedBox, excluded: f64, tolerance: f64) -> f64 {
+    /// The duration that a box excludes with all shorter ones, s, once those below another one are, and what is
+    /// left of the turn there.
+    fn raised(&self, tried: &TriedBox, excluded: f64, tolerance: f64) -> (CertifiedTurn, f64) {
         let rates = &tried.rates;
-        let left = self.left_after(excluded);
-        let least = self.bound.least_time(tried, &left, tolerance);
+        let left = tried.certified(&self.left_after(excluded), tolerance);
+        let least = self.bound.left_of(tried, left.least_s);
         if least * rates.min() < NO_TURN {
-            return excluded;
+            return (left, excluded);
         }
         let speed = |drift: &Vector3<f64>| drift.abs().component_div(rates).max();
         let slope = speed(&self.drift).min(speed(&self.turn.to_body(self.drift)));
         let next = self
             .envelope
             .longest_short_of(rates, least, slope, excluded);
-        next.max(excluded)
+        (left, (next * (1.0 - DEFLATION)).max(excluded))
     }
 }

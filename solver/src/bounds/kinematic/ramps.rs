@@ -89,6 +89,16 @@ impl TriedBox {
         let table = self.table.get_or_init(|| RateBox::new(self.rates));
         table.as_ref()
     }
+
+    /// A turn with a lower bound on its time within the box that has the margin which its verification
+    /// needs; zero where the extremals are too many to list.
+    pub(super) fn certified(&self, turn: &Attitude, tolerance: f64) -> CertifiedTurn {
+        let least = |table: &RateBox| table.lower_bound(turn, tolerance) * (1.0 - PROOF_MARGIN);
+        CertifiedTurn {
+            turn: *turn,
+            least_s: self.table().map_or(0.0, least),
+        }
+    }
 }
 
 impl SlewBound {
@@ -163,15 +173,14 @@ impl SlewBound {
         tolerance: f64,
     ) -> Certificate {
         let tried = &self.boxes[index];
-        let certified = |turn: &Attitude| CertifiedTurn {
-            turn: *turn,
-            least_s: certifiable_time(tried, turn, tolerance),
-        };
         Certificate {
             limits: self.envelope.limits,
             ends: self.envelope.ends,
             box_rad_s: tried.rates,
-            turns: turns.iter().map(certified).collect(),
+            turns: turns
+                .iter()
+                .map(|turn| tried.certified(turn, tolerance))
+                .collect(),
             attitude_tolerance_rad: self.attitude_tolerance_rad,
             duration_s,
         }
@@ -180,7 +189,12 @@ impl SlewBound {
     /// Least time of any motion within a box that makes a turn up to the missed angles at its ends,
     /// s; with the margin that its verification needs.
     pub(super) fn least_time(&self, tried: &TriedBox, turn: &Attitude, tolerance: f64) -> f64 {
-        (certifiable_time(tried, turn, tolerance) - self.missed_time(tried)).max(0.0)
+        self.left_of(tried, tried.certified(turn, tolerance).least_s)
+    }
+
+    /// What is left of a least time within a box, s, for turns up to the missed angles at their ends.
+    pub(super) fn left_of(&self, tried: &TriedBox, least_s: f64) -> f64 {
+        (least_s - self.missed_time(tried)).max(0.0)
     }
 
     /// Time of the angles by which the attitudes at both ends of a turn are missed, s.
@@ -203,14 +217,6 @@ impl SlewBound {
         }
         (best.0, stated(best.1))
     }
-}
-
-/// A lower bound on the least time of a turn within a box, with the margin that its verification
-/// needs; zero where the extremals are too many to list.
-fn certifiable_time(tried: &TriedBox, turn: &Attitude, tolerance: f64) -> f64 {
-    tried.table().map_or(0.0, |table| {
-        table.lower_bound(turn, tolerance) * (1.0 - PROOF_MARGIN)
-    })
 }
 
 /// A bound as it is given: less what rounding may have added, and to seven digits.

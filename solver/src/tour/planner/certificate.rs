@@ -115,9 +115,6 @@ pub enum Objection {
 /// Why a bound is not checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Obstacle {
-    /// Bounds on slews with stored momentum cannot be verified.
-    #[error("there is no second proof of bounds with stored momentum")]
-    Momentum,
     /// Bounds on slews whose roll is free at an end cannot be verified.
     #[error("there is no second proof of bounds where the roll is free")]
     FreeRoll,
@@ -282,9 +279,6 @@ impl CertificateVerifier<'_> {
     fn early_verdict(&self, bound: f64, duration_s: Option<f64>) -> Option<Verdict> {
         if let Some(duration_s) = duration_s.filter(|duration| bound > *duration) {
             return Some(Verdict::Rejected(Objection::AboveDuration { duration_s }));
-        }
-        if self.places.dynamics.has_momentum() {
-            return Some(Verdict::NotChecked(Obstacle::Momentum));
         }
         let stopped = self.run.stop.is_set();
         stopped.then_some(Verdict::NotChecked(Obstacle::Stopped))

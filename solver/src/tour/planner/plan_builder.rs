@@ -1,6 +1,10 @@
 //! From the orders that a search finds to plans: torques assembled, verified by the checker, and
 //! compared with the certified bounds.
 
+mod bounds;
+#[cfg(test)]
+mod tests;
+
 use super::Run;
 use super::assemble::{Piece, assemble};
 use super::clock::SolvedChain;
@@ -9,7 +13,6 @@ use super::history::{History, search_work};
 use super::scheduled::ClockFacts;
 use super::tables::SolvedTable;
 use super::tours::Tours;
-use super::unsolved::SLEW_HINT;
 use crate::checker::{CheckReport, verify_with_claims};
 use crate::leg::multiphase::LegSolution;
 use crate::model::plan::{
@@ -17,20 +20,15 @@ use crate::model::plan::{
     Statistics, Wait,
 };
 use crate::model::problem::{Code, Problem};
-use crate::run::contradiction::{Contradiction, refutes};
 use crate::run::progress::{Progress, Stage};
 use crate::tour::legs::LegKind;
 use crate::tour::order::{
     Incumbent, Place, SearchObserver, SearchResult, SearchStatistics, SolvedOrder,
 };
+use bounds::search_warnings;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
-
-/// Relative rounding error of a sum of durations that depends on the order of its terms.
-const ROUNDING_OF_SUMS: f64 = 1e-13;
-/// Relative rounding of certified bounds, which keep at least six digits.
-const ROUNDING: f64 = 1e-6;
 
 /// Makes plans of orders, during a search and at its end.
 pub(super) struct PlanBuilder<'a> {
@@ -90,13 +88,6 @@ impl<'a> PlanBuilder<'a> {
     /// Sets the certified lower bound on all tours, s.
     pub(super) fn set_certified_bound(&mut self, certified: Option<f64>) {
         self.certified = certified;
-    }
-
-    /// The certified lower bound on all tours, s, unless a flight has contradicted a certified
-    /// bound.
-    pub(super) fn certified_bound(&self) -> Option<f64> {
-        self.certified
-            .filter(|_| self.tours.legs.bounds_are_trusted())
     }
 
     /// Constructs a flight of an order, leg by leg, and reports it; there is none when a leg cannot
@@ -382,66 +373,6 @@ impl PlanBuilder<'_> {
             leg.rest_to_rest_duration_s = rest.and_then(|table| table.duration(pair[0], pair[1]));
         }
     }
-
-    /// The warning that a flight has contradicted a certified bound.
-    fn contradiction_warning(&self) -> Option<Problem> {
-        let trusted = self.tours.legs.bounds_are_trusted();
-        (!trusted).then(|| {
-            let message = "a flight was faster than a certified bound; the plan gives no bound";
-            let hint = "report the scenario: a bound that does not hold is a defect of the solver";
-            Problem::new("", Code::BoundContradicted, message, hint)
-        })
-    }
-
-    /// Compares a flight with the certified bounds on its legs and on all tours, and reports
-    /// contradictions.
-    fn check_bounds(&self, route: &[Place], verified: &VerifiedFlight) {
-        let (tours, places) = (self.tours, &self.tours.places);
-        let total = verified.flight.total_time_s;
-        let contradicted = |leg, bound_s, flown_s| {
-            tours.legs.contradicted(&Contradiction::Tour {
-                route: route.iter().map(|place| places.name(*place)).collect(),
-                leg,
-                bound_s,
-                duration_s: flown_s,
-            });
-        };
-        for (leg, pair) in verified.legs.iter().zip(route.windows(2)) {
-            let Some(bound_s) = tours.certified.bound(pair[0], pair[1]) else {
-                continue;
-            };
-            if refutes(leg.duration_s, bound_s) {
-                let ends = [pair[0], pair[1]].map(|place| places.name(place));
-                contradicted(Some(ends), bound_s, leg.duration_s);
-            }
-        }
-        if let Some(bound_s) = self.certified
-            && refutes(total, bound_s)
-        {
-            contradicted(None, bound_s, total);
-        }
-    }
-
-    /// The larger of a bound and the certified one, s.
-    fn best_bound(&self, bound: f64) -> f64 {
-        self.certified_bound()
-            .map_or(bound, |certified| certified.max(bound))
-    }
-
-    /// The bound of a plan of this duration, s, and its kind. A certified bound is preferred when
-    /// it equals the other one up to rounding, or proves alone that the plan is within the
-    /// requested gap.
-    fn bound(&self, other: f64, kind: LowerBoundKind, total: f64) -> (f64, LowerBoundKind) {
-        let gap = self.tours.places.scenario.options().relative_gap;
-        let enough = (other * (1.0 - ROUNDING)).min(total * (1.0 - gap));
-        match self.certified_bound() {
-            Some(certified) if certified >= enough => {
-                (certified.min(total), LowerBoundKind::Certified)
-            }
-            _ if other >= total * (1.0 - ROUNDING_OF_SUMS) => (total, kind),
-            _ => (other, kind),
-        }
-    }
 }
 
 impl SearchObserver for PlanBuilder<'_> {
@@ -469,28 +400,3 @@ fn outcome(plan: Result<Plan, Problem>) -> Outcome {
         Err(problem) => Outcome::Failed(vec![problem]),
     }
 }
-
-/// Warnings that follow from the counts of a search.
-fn search_warnings(
-    order: &Incumbent<'_>,
-    optimality: Optimality,
-) -> impl Iterator<Item = Problem> + use<> {
-    let contradicted = order.statistics.bounds_contradicted;
-    let contradicted = (contradicted > 0).then(|| {
-        let message =
-            format!("the tours of {contradicted} orders are shorter than their lower bounds");
-        let hint = "take the bound as an estimate: a relaxed problem ended in a local minimum";
-        Problem::new("", Code::BoundContradicted, message, hint)
-    });
-    let unresolved = order.statistics.tours_unresolved;
-    let unresolved = (unresolved > 0 && optimality == Optimality::Feasible).then(|| {
-        let message = format!(
-            "the programs of {unresolved} orders found no solution; these orders are not ruled out"
-        );
-        Problem::new("/targets", Code::SlewNotSolved, message, SLEW_HINT)
-    });
-    contradicted.into_iter().chain(unresolved)
-}
-
-#[cfg(test)]
-mod tests;

@@ -3,7 +3,7 @@
 //! The bounds that steer the search come from boxes of rates, in some 30 microseconds a leg. Norms whose unit balls
 //! are polytopes prove more of legs of arrays, with unequal ramps, and between targets that stop some components only
 //! (`bounds::certified`). Both are proved a second time in intervals, and what is not confirmed does not count. Bounds
-//! with stored momentum, with a free roll, and by a limit of the norm of the rate are proved once.
+//! with a free roll and by a limit of the norm of the rate are proved once.
 //!
 //! Boxes that change in time (`bounds::reach`) prove most, in seconds a leg. They are used for the legs that are asked
 //! for, and for the bound on all tours for those of the shortest tour, again and again until it has no other legs.
@@ -199,7 +199,7 @@ fn with_norm(
     pair: (Place, Place),
     leg: &CanonicalLeg,
 ) -> (CertifiedLeg, bool, Option<NormCertificate>) {
-    if places.dynamics.has_momentum() || has_free_roll(places.scenario, pair) {
+    if has_free_roll(places.scenario, pair) {
         let (bound, is_confirmed) = once_proved(places, pair, leg);
         return (bound, is_confirmed, None);
     }

@@ -1,7 +1,8 @@
-//! Reachable motions stay within the boxes.
+//! Reachable motions stay within the boxes, and bounds are confirmed by their second proof.
 
 use super::*;
 use crate::bounds::certified::CertifiedBounds;
+use crate::bounds::certify::verify_drift;
 use crate::math::random::SplitMix;
 use crate::model::attitude::Attitude;
 use crate::model::random::{between, direction, spacecraft};
@@ -228,4 +229,71 @@ fn the_limit_of_an_end_rate_is_valid_and_tight() {
             assert!(limits[axis] <= tolerated, "{condition:?}: {}", limits[axis]);
         }
     }
+}
+
+/// A slew of a random spacecraft with momentum.
+fn slew(random: &mut SplitMix, dynamics: &Dynamics) -> HeldSlew {
+    let begin = Attitude::from_rotation_vector(direction(random) * between(random, 0.0, 3.1));
+    let angle = 10.0_f64.powf(between(random, -2.0, 0.49));
+    let turn = Attitude::from_rotation_vector(direction(random) * angle);
+    let end = begin.then_in_body(&turn);
+    let rest = Vector3::repeat(MISSED_RATE);
+    HeldSlew {
+        turn,
+        held: [begin, end].map(|attitude| attitude.to_body(dynamics.momentum)),
+        ends: [
+            rest,
+            if random.below(2) == 0 {
+                rest
+            } else {
+                Vector3::repeat(f64::INFINITY)
+            },
+        ],
+    }
+}
+
+#[test]
+fn certificates_are_confirmed_and_damaged_ones_are_not() {
+    let mut random = SplitMix::new(25);
+    let (mut confirmed, mut several) = (0, 0);
+    for case in 0..60 {
+        let scenario = spacecraft(&mut random, case % 2 > 0);
+        let dynamics = scenario.dynamics();
+        let bounds = CertifiedBounds::of(&dynamics);
+        let Some(bounds) = &bounds.momentum else {
+            continue;
+        };
+        let slew = slew(&mut random, &dynamics);
+        let good = bounds.leg(&slew, 1e-4).expect("limits of speed");
+        assert_eq!(verify_drift(&good), Ok(()), "case {case}: {good:?}");
+        confirmed += 1;
+        several += usize::from(good.steps.len() > 2);
+        let damages: [fn(&mut DriftCertificate); 7] = [
+            |bad| bad.duration_s *= 1.00001,
+            |bad| _ = bad.steps.pop(),
+            |bad| bad.steps[0].from_s = 1e-9,
+            |bad| {
+                for step in &mut bad.steps {
+                    step.to_s *= 1.001;
+                }
+                bad.duration_s *= 1.001;
+            },
+            |bad| bad.steps[0].left.least_s *= 1.001,
+            |bad| {
+                let limits = &mut bad.steps[0].limits;
+                limits.rates_rad_s *= 1.01;
+                limits.accelerations_rad_s2 *= 1.01;
+            },
+            |bad| bad.steps[0].drifts_rad_s[0].x = f64::NAN,
+        ];
+        for (number, damage) in damages.iter().enumerate() {
+            let mut bad = good.clone();
+            damage(&mut bad);
+            assert!(
+                verify_drift(&bad).is_err(),
+                "case {case}, damage {number}: {good:?}"
+            );
+        }
+    }
+    assert!(confirmed > 30 && several > 10, "{confirmed} {several}");
 }

@@ -1,6 +1,6 @@
 //! Bounds on slews with limited accelerations.
 
-use super::super::drift::{DriftingSlew, drifting_lower_bound_s};
+use super::super::drift::{DriftingSlew, drifting_bound};
 use super::super::limits::{EndRates, SlewLimits};
 use super::super::ramps::SlewBound;
 use super::super::rate_envelope::RateEnvelope;
@@ -209,7 +209,7 @@ fn the_bound_with_zero_drift_equals_the_bound_without() {
             drift: Vector3::zeros(),
             envelope: bound.envelope,
         };
-        let marched = drifting_lower_bound_s(&[seen], 0.0, (99, 1e-6));
+        let marched = drifting_bound(&[seen], 0.0, (99, 1e-6)).duration_s;
         assert_close(marched, plain);
     }
 }
@@ -234,7 +234,7 @@ fn no_drifting_motion_beats_the_bound() {
             drift,
             envelope: RateEnvelope { limits, ends },
         };
-        let least = drifting_lower_bound_s(&[seen], 0.0, (99, 1e-4));
+        let least = drifting_bound(&[seen], 0.0, (99, 1e-4)).duration_s;
         assert!(least <= duration, "{least} against {duration}, {ends:?}");
         // A plain box that contains the drift in all directions gives a weaker bound.
         let wider = SlewLimits {
@@ -264,7 +264,7 @@ fn a_turn_along_the_drift_takes_the_time_of_the_summed_rates() {
             drift,
             envelope: bound.envelope,
         };
-        let least = drifting_lower_bound_s(&[seen], 0.0, (99, 1e-6));
+        let least = drifting_bound(&[seen], 0.0, (99, 1e-6)).duration_s;
         assert!(
             least <= expected && least > 0.98 * expected,
             "{least} instead of {expected}"

@@ -6,12 +6,15 @@
 //! components from the corners of boxes, inertias by solving linear systems, turns as products of
 //! matrices. What the checker tolerates has to be within them too.
 
+mod momentum;
+
 use crate::bounds::kinematic::certificate::{Certificate, CertifiedTurn};
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use crate::bounds::polytope::certificate::{FacetPremise, FramePremise, NormCertificate};
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::tolerances::{ATTITUDE_TOLERANCE, LIMIT_TOLERANCE, RATE_TOLERANCE};
 use crate::tour::order::Place;
+pub(super) use momentum::check_drift;
 use nalgebra::{Matrix3, Vector3};
 
 /// Tolerance for rounding of a limit, relative.
@@ -69,6 +72,10 @@ pub(super) fn check_norm(
     slews.check_limits(axes, limits, ends)
 }
 
+/// Torques, wheel speeds and body rates, relative to their limits, that the checker admits.
+const EXCEEDED: f64 = 1.0 + LIMIT_TOLERANCE;
+const RATES: &str = "a limit of the rates below what the wheels can do";
+const ACCELERATIONS: &str = "a limit of the accelerations below what the wheels can do";
 /// Why nothing can be said of a spacecraft.
 const NO_INVERSE: &str = "an inertia that cannot be inverted";
 
@@ -116,15 +123,16 @@ impl<'a> Slews<'a> {
         turn: &CertifiedTurn,
         attitude_tolerance_rad: f64,
     ) -> Result<(), &'static str> {
-        let [from, to] = &self.attitudes;
-        let expected = axes.tr_mul(&(from.tr_mul(to) * axes));
-        if (expected - turn.turn.matrix()).amax() > SAME_TURN {
+        if (self.turn(axes) - turn.turn.matrix()).amax() > SAME_TURN {
             return Err("another turn");
         }
-        if attitude_tolerance_rad < ATTITUDE_TOLERANCE {
-            return Err("attitudes that are met more exactly than they have to be");
-        }
-        Ok(())
+        check_missed(attitude_tolerance_rad)
+    }
+
+    /// The turn from begin to end in some axes.
+    fn turn(&self, axes: &Matrix3<f64>) -> Matrix3<f64> {
+        let [from, to] = &self.attitudes;
+        axes.tr_mul(&(from.tr_mul(to) * axes))
     }
 
     fn check_limits(
@@ -157,30 +165,43 @@ impl<'a> Slews<'a> {
         acceleration: f64,
         ends: [f64; 2],
     ) -> Result<(), &'static str> {
-        let within = |needed: f64, granted: f64| needed <= granted * (1.0 + ROUNDING);
-        let exceeded = 1.0 + LIMIT_TOLERANCE;
-        if !within(self.largest_rate(direction) * exceeded, rate) {
-            return Err("a limit of the rates below what the wheels can do");
+        if !within(self.largest_rate(direction) * EXCEEDED, rate) {
+            return Err(RATES);
         }
         if !within(
-            self.largest_acceleration(direction) * exceeded,
+            self.largest_acceleration(direction) * EXCEEDED,
             acceleration,
         ) {
-            return Err("a limit of the accelerations below what the wheels can do");
+            return Err(ACCELERATIONS);
         }
+        self.check_ends(direction, [0.0; 2], ends)
+    }
+
+    /// Checks limits of the component at the ends, relative to something that changes it by so much at most.
+    fn check_ends(
+        &self,
+        direction: &Vector3<f64>,
+        moved: [f64; 2],
+        ends: [f64; 2],
+    ) -> Result<(), &'static str> {
         let [begin, end] = self.ranges.map(|range| over_corners(direction, &range));
-        if !within(begin, ends[0]) {
+        if !within(begin + moved[0], ends[0]) {
             return Err("a rate at the beginning below what is admitted there");
         }
-        if !within(end, ends[1]) {
+        if !within(end + moved[1], ends[1]) {
             return Err("a rate at the end below what is admitted there");
         }
         Ok(())
     }
 
-    /// Largest component along a direction of the rates that the wheels reach without total momentum,
-    /// `J w = -h_locked - sum a I W`.
+    /// Largest component along a direction of the rates without total momentum.
     fn largest_rate(&self, direction: &Vector3<f64>) -> f64 {
+        self.reached_rate(direction)
+            .min(self.allowed_rate(direction))
+    }
+
+    /// That of the rates that the wheels reach, `J w = -h_locked - sum a I W`.
+    fn reached_rate(&self, direction: &Vector3<f64>) -> f64 {
         let (spacecraft, options) = (self.scenario.spacecraft(), self.scenario.options());
         // The inertia is symmetric: d . J^-1 v = (J^-1 d) . v.
         let lever = self.inverses[0] * direction;
@@ -191,11 +212,15 @@ impl<'a> Slews<'a> {
                 reached += share * wheel.max_speed * options.momentum_authority;
             }
         }
+        reached
+    }
+
+    /// That of the rates which are allowed.
+    fn allowed_rate(&self, direction: &Vector3<f64>) -> f64 {
+        let spacecraft = self.scenario.spacecraft();
         let limits = spacecraft.max_rate().map(|limit| (-limit, limit));
         let by_axis = over_corners(direction, &[limits.x, limits.y, limits.z]);
-        reached
-            .min(by_axis)
-            .min(spacecraft.max_rate_norm() * direction.norm())
+        by_axis.min(spacecraft.max_rate_norm() * direction.norm())
     }
 
     /// Largest component along a direction of the accelerations that the wheels reach, either way,
@@ -213,6 +238,18 @@ impl<'a> Slews<'a> {
         });
         either[0].max(either[1])
     }
+}
+
+/// Whether a limit grants what is needed, up to rounding.
+fn within(needed: f64, granted: f64) -> bool {
+    needed <= granted * (1.0 + ROUNDING)
+}
+
+fn check_missed(attitude_tolerance_rad: f64) -> Result<(), &'static str> {
+    if attitude_tolerance_rad < ATTITUDE_TOLERANCE {
+        return Err("attitudes that are met more exactly than they have to be");
+    }
+    Ok(())
 }
 
 fn check_axes(axes: &Matrix3<f64>) -> Result<(), &'static str> {

@@ -1,8 +1,9 @@
-//! Bounds on legs without momentum, proved with outward rounding by certificates made from the scenario.
+//! Bounds on legs, proved with outward rounding by certificates made from the scenario.
 
 use super::{Objection, premises};
 use crate::bounds::certified::NormBound;
-use crate::bounds::certify;
+use crate::bounds::certify::{self, Rejection};
+use crate::bounds::kinematic::certificate::{Certificate, DriftCertificate};
 use crate::bounds::polytope::certificate::NormCertificate;
 use crate::bounds::reach::SlewsInBox;
 use crate::tour::order::Place;
@@ -10,7 +11,7 @@ use crate::tour::planner::canonical::CanonicalLeg;
 use crate::tour::planner::places::Places;
 use crate::tour::planner::strongest::StrongestBound;
 
-/// Proves a bound on the leg between two places by a box of rates, s: the given one, or the one that the solver
+/// Proves a bound on the leg between two places by boxes of rates, s: the given one, or the one that the solver
 /// computes. Returns the proved bound.
 pub(in super::super) fn prove_by_box(
     places: &Places<'_>,
@@ -18,14 +19,40 @@ pub(in super::super) fn prove_by_box(
     leg: &CanonicalLeg,
     bound: Option<f64>,
 ) -> Result<f64, Objection> {
-    let certificate = places.certified.certificate(&leg.from, &leg.to);
-    let (axes, mut certificate) = certificate.ok_or(Objection::UnlimitedRates)?;
-    premises::check(places.scenario, ends(pair, leg), &axes, &certificate)
-        .map_err(|what| Objection::Premises { what })?;
-    let known_s = certificate.duration_s;
-    certificate.duration_s = bound.unwrap_or(known_s);
-    match certify::verify(&certificate) {
-        Ok(()) => Ok(certificate.duration_s),
+    let (certified, scenario, ends) = (&places.certified, places.scenario, ends(pair, leg));
+    let supported = |checked: Result<(), _>| checked.map_err(|what| Objection::Premises { what });
+    if places.dynamics.has_momentum() {
+        let momentum = &leg.dynamics.momentum;
+        let certificate = certified.drift_certificate(&leg.from, &leg.to, momentum);
+        let certificate = certificate.ok_or(Objection::UnlimitedRates)?;
+        supported(premises::check_drift(scenario, ends, &certificate))?;
+        return proved(certificate.duration_s, bound, |duration_s| {
+            certify::verify_drift(&DriftCertificate {
+                duration_s,
+                ..certificate
+            })
+        });
+    }
+    let certificate = certified.certificate(&leg.from, &leg.to);
+    let (axes, certificate) = certificate.ok_or(Objection::UnlimitedRates)?;
+    supported(premises::check(scenario, ends, &axes, &certificate))?;
+    proved(certificate.duration_s, bound, |duration_s| {
+        certify::verify(&Certificate {
+            duration_s,
+            ..certificate
+        })
+    })
+}
+
+/// The bound that is asked for, s, else the one that the solver computes, if its verification succeeds.
+fn proved(
+    known_s: f64,
+    asked_s: Option<f64>,
+    verify: impl FnOnce(f64) -> Result<(), Rejection>,
+) -> Result<f64, Objection> {
+    let bound_s = asked_s.unwrap_or(known_s);
+    match verify(bound_s) {
+        Ok(()) => Ok(bound_s),
         Err(rejection) => Err(Objection::NotProved { known_s, rejection }),
     }
 }

@@ -4,6 +4,7 @@ use super::*;
 use crate::model::plan::LowerBoundKind;
 use crate::model::scenario::Scenario;
 use crate::model::scenario::reference::experiment_a;
+use crate::run::contradiction::Contradiction;
 use crate::run::progress::Observer;
 use crate::run::stop::StopSignal;
 use crate::tour::legs::{LegStore, NoStore, StoredLeg};

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::bounds::certify;
+use crate::bounds::kinematic::certificate::DriftCertificate;
 use crate::model::scenario::reference::experiment_a;
 use crate::tour::planner::places::Places;
 
@@ -117,6 +118,77 @@ fn tightened_premises_of_norms_are_rejected() {
         damage(&mut bad);
         certify::verify_norm(&bad).expect_err("a damaged certificate");
     }
+}
+
+/// A part of the expected objection, and a change of a certificate with stored momentum.
+type DriftCase = (&'static str, fn(&mut DriftCertificate));
+
+#[test]
+fn tightened_premises_with_momentum_are_rejected() {
+    let mut spec = experiment_a();
+    spec.spacecraft.inertia_kg_m2 = [[8.7, 0.1, -0.2], [0.1, 8.9, 0.1], [-0.2, 0.1, 9.2]];
+    spec.spacecraft.max_body_rate_rad_s = [None; 3];
+    spec.start.wheel_speed_rad_s = Some(vec![1500.0, -1000.0, 600.0]);
+    for wheel in &mut spec.spacecraft.wheels {
+        wheel.max_speed_rad_s = Some(2000.0);
+    }
+    spec.options.momentum_authority = 0.9;
+    spec.targets[0].zero_rate_axes = Some([true; 3]);
+    spec.targets[1].zero_rate_axes = Some([true; 3]);
+    let scenario = Scenario::try_new(&spec).expect("valid").scenario;
+    let places = Places::of(&scenario);
+    assert!(places.dynamics.has_momentum());
+    let momentum = &places.dynamics.momentum;
+    let drifting = (2..5).find_map(|target| {
+        let route = [1, target].map(Place::Target);
+        let [from, to] = route.map(|place| places.waypoint(place));
+        let good = places.certified.drift_certificate(&from, &to, momentum)?;
+        let is_drifting = good.steps.iter().any(|step| step.share > 0.0);
+        (is_drifting && good.steps.len() > 1).then_some((route, good))
+    });
+    let (route, good) = drifting.expect("a drift helps");
+    assert_eq!(check_drift(&scenario, route, &good), Ok(()));
+    assert_eq!(certify::verify_drift(&good), Ok(()));
+    let backwards = [route[1], route[0]];
+    check_drift(&scenario, backwards, &good).expect_err("another turn");
+    let cases: [DriftCase; 8] = [
+        ("met more exactly", |c| c.attitude_tolerance_rad = 0.999e-6),
+        ("rates below", |c| c.steps[0].limits.rates_rad_s.z *= 0.999),
+        ("accelerations below", |c| {
+            c.steps[0].limits.accelerations_rad_s2.x *= 0.999;
+        }),
+        ("at the beginning below", |c| {
+            c.steps[0].ends.begin_rad_s.x = 0.0;
+        }),
+        ("at the end below", |c| c.steps[0].ends.end_rad_s.x = 0.0),
+        ("another turn", |c| c.steps[1].from_s *= 0.999),
+        ("another drift", |c| {
+            for step in &mut c.steps {
+                step.drifts_rad_s[0] *= 0.999;
+                step.share += 1e-6;
+            }
+        }),
+        ("orthonormal", |c| c.steps[0].axes *= 1.001),
+    ];
+    for (expected, change) in cases {
+        let mut bad = good.clone();
+        change(&mut bad);
+        let message = check_drift(&scenario, route, &bad).expect_err(expected);
+        assert!(
+            message.contains(expected),
+            "{message} instead of {expected}"
+        );
+    }
+    // From rest to rest the chord of the growth of the rates counts.
+    let route = [0, 1].map(Place::Target);
+    let [from, to] = route.map(|place| places.waypoint(place));
+    let good = places.certified.drift_certificate(&from, &to, momentum);
+    let mut good = good.expect("a bound");
+    assert_eq!(check_drift(&scenario, route, &good), Ok(()));
+    good.steps[0].limits.accelerations_rad_s2 *= 1.0 - 1e-4;
+    let message =
+        check_drift(&scenario, route, &good).expect_err("a chord that is not steep enough");
+    assert!(message.contains("accelerations below"), "{message}");
 }
 
 #[test]

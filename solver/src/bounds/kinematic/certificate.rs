@@ -42,7 +42,7 @@ pub struct Certificate {
 }
 
 /// Durations that no slew with stored momentum has: they are excluded by one box, in axes that turn with a drift
-/// ([`super::drift`]).
+/// (`kinematic::drift`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExcludedDurations {
     /// The axes as columns, in body axes.

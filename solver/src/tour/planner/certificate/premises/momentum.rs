@@ -50,7 +50,6 @@ struct HeldSlews<'a> {
     slews: &'a Slews<'a>,
     /// The momentum at both ends, N m s, body axes there.
     held: [Vector3<f64>; 2],
-    growth: Growth,
 }
 
 /// `mu' <= alpha + gamma mu` from rest up to the tolerance.
@@ -67,17 +66,10 @@ impl<'a> HeldSlews<'a> {
         let spins = wheels.map(|(wheel, speed)| wheel.axis * (wheel.inertia * speed));
         let in_body = spacecraft.inertia() * start.rate + spins.sum::<Vector3<f64>>();
         let momentum = start.attitude.matrix() * in_body;
-        let mut held = Self {
+        Self {
             slews,
             held: slews.attitudes.map(|attitude| attitude.tr_mul(&momentum)),
-            growth: Growth {
-                first: 0.0,
-                alpha: 0.0,
-                gamma: 0.0,
-            },
-        };
-        held.growth = held.growth_from_rest();
-        held
+        }
     }
 
     fn check(&self, step: &ExcludedDurations) -> Result<(), &'static str> {
@@ -198,7 +190,7 @@ impl<'a> HeldSlews<'a> {
             return false;
         }
         let time = rate / slope;
-        let grown = by_torques * time + by_momentum * self.growth.integral(time);
+        let grown = by_torques * time + by_momentum * self.growth_from_rest().integral(time);
         within(grown * EXCEEDED, rate)
     }
 }

@@ -26,6 +26,12 @@ const MAX_GAP: f64 = 0.005;
 /// The same with momentum, where the bound is less sharp.
 const MAX_GAP_WITH_MOMENTUM: f64 = 0.03;
 
+/// Turn of a motion, rad, below which it is hardly ever a local minimum: turns so small nearly commute, and those that
+/// do add up like vectors. Of 1,054 such legs without momentum, with all kinds of conditions at their ends, a second
+/// guess shortens one by more than 0.1 % (0.2 %); of 1,600 with momentum nine, by at most 0.33 %. Motions far from the
+/// eigenaxis shorten none.
+const SMALL_TURN: f64 = 0.3;
+
 /// Relative gap to a lower bound above which motions far from the eigenaxis are explored: where the
 /// best two guesses of 800 general slews were more than 0.5 % too slow, seventeen times, it was larger
 /// nearly always. With momentum, bounds leave more of all legs: where the best guesses of 920 slews with wheels
@@ -73,18 +79,19 @@ impl<'a> Starts<'a> {
 
     /// The best solution from all guesses that are worth their time, and how many programs it took.
     pub(super) fn best(mut self) -> (LegSolution, u64) {
+        let has_momentum = self.leg.dynamics.has_momentum();
         for guess in guesses(self.leg) {
             self.solve(self.leg, &guess);
-            if self.are_enough() {
+            if self.are_enough() || (self.turns_little() && !has_momentum) {
                 break;
             }
         }
-        let explored = if self.leg.dynamics.has_momentum() {
+        let explored = if has_momentum {
             EXPLORED_GAP_WITH_MOMENTUM
         } else {
             EXPLORED_GAP
         };
-        if !self.are_within(explored) {
+        if !self.are_within(explored) && !self.turns_little() {
             self.explore();
         }
         self.refine();
@@ -123,6 +130,12 @@ impl<'a> Starts<'a> {
         let both = self.bound.zip(duration);
         both.is_some_and(|(bound, duration)| duration <= (1.0 + gap) * bound)
             || (self.stop)().is_some()
+    }
+
+    /// Whether the best motion turns so little that others are hardly faster.
+    fn turns_little(&self) -> bool {
+        let turned = self.best.as_ref().and_then(turned);
+        turned.is_some_and(|turned| turned < SMALL_TURN)
     }
 
     /// Solves roughly for motions along bowed ways, and then from the fastest of those that lead elsewhere than
@@ -225,10 +238,9 @@ fn guesses<'s>(leg: &'s LegProblem<'_>) -> impl Iterator<Item = Profile> + use<'
 
 /// The same leg with the intervals that a solution needs, if those are clearly more than it has.
 fn finer<'a>(leg: &LegProblem<'a>, solution: &LegSolution) -> Option<LegProblem<'a>> {
-    solution.duration()?;
-    let attitudes = solution.profile.attitudes.windows(2);
-    let turned: f64 = attitudes.map(|q| q[0].signed_turn_to(&q[1]).norm()).sum();
-    let needed = leg.resolution.intervals_of(leg.dynamics, turned / DETOUR);
+    let needed = leg
+        .resolution
+        .intervals_of(leg.dynamics, turned(solution)? / DETOUR);
     let given = solution.profile.intervals();
     (needed as f64 > MIN_REFINEMENT * given as f64).then(|| LegProblem {
         resolution: Resolution {
@@ -237,6 +249,13 @@ fn finer<'a>(leg: &LegProblem<'a>, solution: &LegSolution) -> Option<LegProblem<
         },
         ..*leg
     })
+}
+
+/// The angles by which a solution turns between its nodes, rad, together; `None` where there is no solution.
+fn turned(solution: &LegSolution) -> Option<f64> {
+    solution.duration()?;
+    let attitudes = solution.profile.attitudes.windows(2);
+    Some(attitudes.map(|q| q[0].signed_turn_to(&q[1]).norm()).sum())
 }
 
 /// The end with the quaternion sign to which the body turns by more than half a turn, where that way may be the

@@ -164,17 +164,28 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     }
     // The program of a tour of many targets whose legs couple takes longer than to find a better order; without
     // any plan it is solved all the same.
-    let first = order
+    let is_slow = coupled && builder.has_constructed();
+    let mut first = order
         .clone()
-        .filter(|_| !(coupled && builder.has_constructed()));
-    let first = first.and_then(|order| first_tour(&tours, order));
+        .filter(|_| !is_slow)
+        .and_then(|order| first_tour(&tours, order));
     if let Some((first, _)) = &first {
         builder.announce(first);
         solver.report_bounds(Some(first.duration_s), builder.certified_bound());
     }
     if !few {
         tours.certified.raise(&pairs);
-        builder.set_certified_bound(bound_tours());
+        // The trees of very many targets keep one worker busy for longer than the program another one.
+        let beside = order.clone().filter(|_| {
+            is_slow && places.has_very_many_targets() && !places.dynamics.has_momentum()
+        });
+        let solve = || beside.and_then(|order| first_tour(&tours, order));
+        let (tour, bound_s) = run.pool.join(solve, bound_tours);
+        builder.set_certified_bound(bound_s);
+        if let Some((tour, _)) = &tour {
+            builder.announce(tour);
+        }
+        first = first.or(tour);
     }
     solver.report_bounds(None, builder.certified_bound());
     if few {

@@ -165,10 +165,15 @@ impl<'a> Places<'a> {
         self.scenario.targets().len() <= MAX_TARGETS_ALL_LEGS
     }
 
+    /// Whether there are so many targets that nothing is known of most legs.
+    pub(super) fn has_very_many_targets(&self) -> bool {
+        self.scenario.targets().len() > MAX_TARGETS_ALL_BOUNDS
+    }
+
     /// Whether the certified bounds of all legs cost little. Searches for orders are then drawn to few legs that
     /// are underestimated.
     pub(super) fn affords_all_bounds(&self) -> bool {
-        self.scenario.targets().len() <= MAX_TARGETS_ALL_BOUNDS && !self.dynamics.has_momentum()
+        !self.has_very_many_targets() && !self.dynamics.has_momentum()
     }
 
     /// The attitude of a place; where its roll is free, that of roll 0.

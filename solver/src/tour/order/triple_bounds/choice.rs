@@ -114,7 +114,7 @@ impl TripleBounds {
             }
             // Only the target of a part with one target lies between its two ends.
             if other != part.end || part.targets.len() == 1 {
-                self.choose_beyond(part, via, [part.entry, other], &mut best);
+                self.choose_beyond(part, via, [part.entry, other], entry + cost, &mut best);
             }
         }
         while let Some((one, one_s)) = places.next() {
@@ -126,25 +126,29 @@ impl TripleBounds {
                     }
                     break;
                 }
-                self.choose_beyond(part, via, [one, other], &mut best);
+                self.choose_beyond(part, via, [one, other], one_s + other_s, &mut best);
             }
         }
         best
     }
 
     /// Replaces a choice by one with these neighbours, if it is cheaper with the best places beyond
-    /// them.
+    /// them. `least` bounds all but the cost of passing, s.
     fn choose_beyond(
         &self,
         part: &Part<'_>,
         via: usize,
         ends: [usize; 2],
+        least: f64,
         best: &mut NeighbourChoice,
     ) {
         let [one, other] = ends;
         let coupling_gaps = &self.coupling_gaps;
         let ways = self.legs.ways(coupling_gaps, part.entry, [one, via, other]);
         let passing = ways[0].min(ways[1]);
+        if least + passing >= best.cost {
+            return;
+        }
         // An end of the part has no choice of its own that would have to agree.
         let joint = |neighbour: usize| {
             if part.is_outer(neighbour) {

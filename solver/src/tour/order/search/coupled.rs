@@ -64,6 +64,9 @@ const FIRST_KICKS: usize = 1_000;
 /// an order over what a search expected from which another one follows.
 const MAX_SEARCHES: u64 = 5;
 const UNDERESTIMATED: f64 = 2e-3;
+/// Orders around the best one that are evaluated at a time, and the first seed of the searches for them.
+const ORDERS_AROUND: usize = 24;
+const FIRST_SEED_AROUND: u64 = 1 << 32;
 /// Orders of a pass that are evaluated, and most targets in all of them if there are several.
 const ORDERS_EVALUATED: usize = 2;
 const TARGETS_EVALUATED: usize = 600;
@@ -127,6 +130,13 @@ fn orders_evaluated(targets: usize) -> usize {
     (TARGETS_EVALUATED / targets).clamp(1, ORDERS_EVALUATED)
 }
 
+/// Sorts orders by their estimated durations, and drops repeated ones.
+fn sort_by_estimate(orders: &mut Vec<Vec<usize>>, costs: &TripleBounds) {
+    let estimated = |order: &Vec<usize>| heuristics::estimated(costs, order);
+    orders.sort_by(|a, b| estimated(a).total_cmp(&estimated(b)));
+    orders.dedup();
+}
+
 impl OrderSearch<'_> {
     /// Whether there are many targets, some of which couple their legs.
     pub(super) fn has_many_couplings(&self) -> bool {
@@ -135,7 +145,7 @@ impl OrderSearch<'_> {
     }
 
     /// For many targets, improves orders and raises the triple bounds, in rounds before the root is opened,
-    /// until neither gains much.
+    /// until neither gains much. Then the orders around the best one are evaluated.
     pub(super) fn bound_and_improve_orders(&mut self) -> Option<SearchEnd> {
         if !self.has_many_couplings() {
             return None;
@@ -176,9 +186,51 @@ impl OrderSearch<'_> {
                 break;
             }
         }
+        self.evaluate_around_best(&mut triple_bounds, kicks);
         self.tree
             .set_coupled_bounds(CoupledBounds::Trees(Box::new(triple_bounds)));
         self.stop.is_set().then(|| self.stopped())
+    }
+
+    /// Evaluates many orders that are estimated to be hardly longer than the best one, again and again while that
+    /// finds a better one. The estimates learn from them, and come close to the tours around the best order.
+    fn evaluate_around_best(&mut self, triple_bounds: &mut TripleBounds, kicks: usize) {
+        let mut seed = FIRST_SEED_AROUND;
+        let mut without_gain = 0;
+        while !self.stop.is_set() && without_gain < ROUNDS_WITHOUT_GAIN {
+            let before_s = self.tree.best_s();
+            let mut orders = self.short_orders(triple_bounds, None, (kicks, ORDERS_AROUND), seed);
+            seed += ORDERS_PER_SEARCH;
+            orders.retain(|order| self.tree.is_new(order));
+            triple_bounds.ask_along(&orders, self.model, self.pool, self.stop);
+            sort_by_estimate(&mut orders, triple_bounds);
+            orders.truncate(ORDERS_AROUND);
+            self.evaluate_and_raise(&orders, triple_bounds, None);
+            let gained = self.tree.best_s() < before_s;
+            without_gain = if gained { 0 } else { without_gain + 1 };
+        }
+    }
+
+    /// Orders that some searches find, each with so many kicks and listing so many alternatives, from a given order
+    /// or else the best one.
+    fn short_orders(
+        &self,
+        triple_bounds: &TripleBounds,
+        from: Option<&[usize]>,
+        (kicks, alternatives): (usize, usize),
+        first_seed: u64,
+    ) -> Vec<Vec<usize>> {
+        let seeds: Vec<u64> = (first_seed..first_seed + ORDERS_PER_SEARCH).collect();
+        let found = self.pool.map(&seeds, |&seed| {
+            let effort = SearchEffort {
+                kicks,
+                alternatives,
+                seed,
+            };
+            let tree = &self.tree;
+            tree.short_orders(triple_bounds, from, &effort, self.stop)
+        });
+        found.into_iter().flatten().collect()
     }
 
     /// Searches for orders that are short in the known and estimated couplings, and solves their unknown
@@ -193,18 +245,9 @@ impl OrderSearch<'_> {
         let mut orders: Vec<Vec<usize>> = Vec::new();
         for search in 0..MAX_SEARCHES {
             let from = orders.first().map(Vec::as_slice);
-            let first = (pass * MAX_SEARCHES + search) * ORDERS_PER_SEARCH;
-            let seeds: Vec<u64> = (first..first + ORDERS_PER_SEARCH).collect();
-            let found = self.pool.map(&seeds, |&seed| {
-                let effort = SearchEffort {
-                    kicks,
-                    alternatives: 0,
-                    seed,
-                };
-                let tree = &self.tree;
-                tree.short_orders(triple_bounds, from, &effort, self.stop)
-            });
-            orders.extend(found.into_iter().flatten());
+            let seed = (pass * MAX_SEARCHES + search) * ORDERS_PER_SEARCH;
+            let found = self.short_orders(triple_bounds, from, (kicks, 0), seed);
+            orders.extend(found);
             let least = |costs: &TripleBounds, orders: &[Vec<usize>]| {
                 let estimates = orders
                     .iter()
@@ -213,9 +256,7 @@ impl OrderSearch<'_> {
             };
             let expected_s = least(triple_bounds, &orders);
             triple_bounds.ask_along(&orders, self.model, self.pool, self.stop);
-            let estimated = |order: &Vec<usize>| heuristics::estimated(triple_bounds, order);
-            orders.sort_by(|a, b| estimated(a).total_cmp(&estimated(b)));
-            orders.dedup();
+            sort_by_estimate(&mut orders, triple_bounds);
             let known_s = least(triple_bounds, &orders);
             if self.stop.is_set() || known_s <= expected_s * (1.0 + UNDERESTIMATED) {
                 break;

@@ -25,8 +25,25 @@ fn scenario() -> Scenario {
     Scenario::try_new(&spec).expect("valid").scenario
 }
 
-/// A part of the expected objection, and a change of the certificate.
-type Case = (&'static str, fn(&mut Certificate));
+/// A part of the expected objection, and a change of a certificate.
+type Case<C> = (&'static str, fn(&mut C));
+
+/// Asserts that a certificate is rejected after each of the changes.
+fn assert_rejected<C: Clone>(
+    good: &C,
+    cases: &[Case<C>],
+    check: impl Fn(&C) -> Result<(), &'static str>,
+) {
+    for (expected, change) in cases {
+        let mut bad = good.clone();
+        change(&mut bad);
+        let message = check(&bad).expect_err(expected);
+        assert!(
+            message.contains(expected),
+            "{message} instead of {expected}"
+        );
+    }
+}
 
 #[test]
 fn tightened_premises_are_rejected() {
@@ -39,7 +56,7 @@ fn tightened_premises_are_rejected() {
     assert_eq!(check(&scenario, route, &axes, &good), Ok(()));
     let backwards = [route[1], route[0]];
     check(&scenario, backwards, &axes, &good).expect_err("another turn");
-    let cases: [Case; 8] = [
+    let cases: [Case<Certificate>; 8] = [
         ("met more exactly", |c| c.attitude_tolerance_rad = 0.999e-6),
         ("rates below", |c| c.limits.rates_rad_s /= 1.000_001_1),
         ("at the beginning below", |c| c.ends.begin_rad_s.x = 0.0),
@@ -53,21 +70,10 @@ fn tightened_premises_are_rejected() {
         }),
         ("one turn", |c| c.turns.push(c.turns[0])),
     ];
-    for (expected, change) in cases {
-        let mut bad = good.clone();
-        change(&mut bad);
-        let message = check(&scenario, route, &axes, &bad).expect_err(expected);
-        assert!(
-            message.contains(expected),
-            "{message} instead of {expected}"
-        );
-    }
+    assert_rejected(&good, &cases, |bad| check(&scenario, route, &axes, bad));
     let message = check(&scenario, route, &(axes * 1.001), &good).expect_err("axes");
     assert!(message.contains("orthonormal"), "{message}");
 }
-
-/// A part of the expected objection, and a change of the certificate of a norm.
-type NormCase = (&'static str, fn(&mut NormCertificate));
 
 #[test]
 fn tightened_premises_of_norms_are_rejected() {
@@ -83,7 +89,7 @@ fn tightened_premises_of_norms_are_rejected() {
     assert_eq!(certify::verify_norm(&good), Ok(()));
     let backwards = [route[1], route[0]];
     check_norm(&scenario, backwards, &good).expect_err("another turn");
-    let cases: [NormCase; 7] = [
+    let cases: [Case<NormCertificate>; 7] = [
         ("met more exactly", |c| c.attitude_tolerance_rad = 0.999e-6),
         ("rates below", |c| c.facets[0].share.most *= 0.999),
         ("accelerations below", |c| c.facets[1].share.slope *= 0.999),
@@ -99,15 +105,7 @@ fn tightened_premises_of_norms_are_rejected() {
             c.frame.as_mut().expect("a frame").axes *= 1.001;
         }),
     ];
-    for (expected, change) in cases {
-        let mut bad = good.clone();
-        change(&mut bad);
-        let message = check_norm(&scenario, route, &bad).expect_err(expected);
-        assert!(
-            message.contains(expected),
-            "{message} instead of {expected}"
-        );
-    }
+    assert_rejected(&good, &cases, |bad| check_norm(&scenario, route, bad));
     let damages: [fn(&mut NormCertificate); 3] = [
         |c| c.duration_s *= 1.001,
         |c| c.turn.least_s *= 1.01,
@@ -119,9 +117,6 @@ fn tightened_premises_of_norms_are_rejected() {
         certify::verify_norm(&bad).expect_err("a damaged certificate");
     }
 }
-
-/// A part of the expected objection, and a change of a certificate with stored momentum.
-type DriftCase = (&'static str, fn(&mut DriftCertificate));
 
 #[test]
 fn tightened_premises_with_momentum_are_rejected() {
@@ -151,7 +146,7 @@ fn tightened_premises_with_momentum_are_rejected() {
     assert_eq!(certify::verify_drift(&good), Ok(()));
     let backwards = [route[1], route[0]];
     check_drift(&scenario, backwards, &good).expect_err("another turn");
-    let cases: [DriftCase; 8] = [
+    let cases: [Case<DriftCertificate>; 8] = [
         ("met more exactly", |c| c.attitude_tolerance_rad = 0.999e-6),
         ("rates below", |c| c.steps[0].limits.rates_rad_s.z *= 0.999),
         ("accelerations below", |c| {
@@ -170,15 +165,7 @@ fn tightened_premises_with_momentum_are_rejected() {
         }),
         ("orthonormal", |c| c.steps[0].axes *= 1.001),
     ];
-    for (expected, change) in cases {
-        let mut bad = good.clone();
-        change(&mut bad);
-        let message = check_drift(&scenario, route, &bad).expect_err(expected);
-        assert!(
-            message.contains(expected),
-            "{message} instead of {expected}"
-        );
-    }
+    assert_rejected(&good, &cases, |bad| check_drift(&scenario, route, bad));
     // From rest to rest the chord of the growth of the rates counts.
     let route = [0, 1].map(Place::Target);
     let [from, to] = route.map(|place| places.waypoint(place));

@@ -150,6 +150,11 @@ impl OrderSearch<'_> {
         interrupted
     }
 
+    /// Whether the search is to stop, or nothing is left to find.
+    fn is_settled(&self) -> bool {
+        self.stop.is_set() || self.tree.is_proved()
+    }
+
     /// Explores one round; returns why the search ends, if it does.
     fn explore_round(&mut self) -> Option<SearchEnd> {
         if self.tree.is_exhausted() {

@@ -168,7 +168,7 @@ impl OrderSearch<'_> {
         for round in 0..MAX_ROUNDS {
             let before = (self.tree.best_s(), triple_bounds.root_bound());
             for pass in 1..=passes {
-                if self.stop.is_set() {
+                if self.is_settled() {
                     break;
                 }
                 let seed = round * PASSES + pass;
@@ -182,7 +182,7 @@ impl OrderSearch<'_> {
             let raised = triple_bounds.root_bound() > before.1 * (1.0 + MIN_RELATIVE_GAIN);
             let gained = raised || self.tree.best_s() < before.0;
             without_gain = if gained { 0 } else { without_gain + 1 };
-            if self.stop.is_set() || without_gain >= ROUNDS_WITHOUT_GAIN {
+            if self.is_settled() || without_gain >= ROUNDS_WITHOUT_GAIN {
                 break;
             }
         }
@@ -197,7 +197,7 @@ impl OrderSearch<'_> {
     fn evaluate_around_best(&mut self, triple_bounds: &mut TripleBounds, kicks: usize) {
         let mut seed = FIRST_SEED_AROUND;
         let mut without_gain = 0;
-        while !self.stop.is_set() && without_gain < ROUNDS_WITHOUT_GAIN {
+        while !self.is_settled() && without_gain < ROUNDS_WITHOUT_GAIN {
             let before_s = self.tree.best_s();
             let mut orders = self.short_orders(triple_bounds, None, (kicks, ORDERS_AROUND), seed);
             seed += ORDERS_PER_SEARCH;

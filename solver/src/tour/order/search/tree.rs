@@ -202,6 +202,11 @@ impl SearchTree {
         self.rest(self.table.start(), &all).max(self.root_s)
     }
 
+    /// Whether no order can enter the list of the best ones, up to the gap.
+    pub(super) fn is_proved(&self) -> bool {
+        self.incumbents.rule_out(self.root_bound(), &[])
+    }
+
     /// Opens the root.
     pub(super) fn open_root(&mut self) {
         self.root_is_open = true;

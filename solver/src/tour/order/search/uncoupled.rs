@@ -25,7 +25,7 @@ impl OrderSearch<'_> {
         }
         let mut without_gain = 0;
         for round in 0..MAX_ROUNDS {
-            if self.stop.is_set() || without_gain == ROUNDS_WITHOUT_GAIN {
+            if self.is_settled() || without_gain == ROUNDS_WITHOUT_GAIN {
                 break;
             }
             let orders = self.uncoupled_orders(round);

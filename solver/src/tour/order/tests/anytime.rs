@@ -343,6 +343,24 @@ fn searches_over_many_targets_have_an_order_and_a_bound_at_any_node_limit() {
 }
 
 #[test]
+fn a_search_over_many_targets_ends_once_the_gap_is_reached() {
+    let model = RandomModel::new(24, true, 18);
+    let within = |relative_gap| {
+        let settings = SearchSettings {
+            relative_gap,
+            node_limit: Some(0),
+            ..alternatives(0)
+        };
+        run(&model, &settings)
+    };
+    let (wide, none) = (within(0.9), within(0.0));
+    assert!(wide.complete && wide.best_is_proven(0.9));
+    assert!(!none.complete);
+    let tours = [wide, none].map(|found| found.statistics.tours);
+    assert!(tours[0] < tours[1], "{tours:?}");
+}
+
+#[test]
 fn every_better_order_is_announced_once_before_its_progress() {
     let mut better = 0;
     for seed in 0..10 {

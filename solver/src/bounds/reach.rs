@@ -167,6 +167,10 @@ impl SlewsInBox {
 
     /// Tries to exclude a duration, s, in so many steps.
     fn exclude_within(&self, duration_s: f64, steps: usize) -> Covered {
+        // Between equal attitudes a motion may last no time at all.
+        if duration_s <= 0.0 {
+            return Covered::GivenUp;
+        }
         let profile = Profile::of(&self.envelope, duration_s);
         let scales = self
             .norms

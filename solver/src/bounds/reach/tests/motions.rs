@@ -54,6 +54,16 @@ fn extremal(
 }
 
 #[test]
+fn of_no_turn_no_duration_is_excluded() {
+    let ends = EndRates {
+        begin_rad_s: Vector3::new(FREE, FREE, STOPPED),
+        end_rad_s: Vector3::new(FREE, FREE, STOPPED),
+    };
+    let (slews, _) = slews(limits(), ends, &Attitude::identity());
+    assert_eq!(slews.longest_excluded_s(0.0), None);
+}
+
+#[test]
 fn no_motion_within_the_limits_is_excluded() {
     let mut random = SplitMix::new(5);
     let (mut tried, mut open) = (0, 0);

@@ -184,6 +184,7 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
         builder.set_certified_bound(bound_s);
         if let Some((tour, _)) = &tour {
             builder.announce(tour);
+            solver.report_bounds(Some(tour.duration_s), bound_s);
         }
         first = first.or(tour);
     }

@@ -10,9 +10,11 @@ mod path;
 mod tests;
 
 use super::completion::CompletionBound;
+use super::triple_bounds::{FreeEnds, GapEstimates};
 use super::{PairTable, TourModel};
 use crate::model::order_rules::OrderRules;
 use crate::run::stop::StopSignal;
+use cost::EstimatedCost;
 pub(super) use cost::{LeastLegs, OrderCost};
 use iterated::IteratedSearch;
 use local_search::OrderTask;
@@ -26,6 +28,9 @@ const MAX_FIRST_KICKS: usize = 20_000;
 const MAX_CANDIDATE_KICKS: usize = 60_000;
 /// Kicks per target for the completion of a prefix: about fifty milliseconds at 200 targets.
 const COMPLETION_KICKS: usize = 10;
+/// Kicks per target for the first order where legs couple, and at most: a second at 1000 targets.
+const COUPLED_KICKS: usize = 20;
+const MAX_COUPLED_KICKS: usize = 4_000;
 /// Seed of all searches of this file, so that they are reproducible.
 const SEED: u64 = 0;
 
@@ -35,6 +40,28 @@ pub fn short_order(model: &dyn TourModel, stop: &StopSignal) -> Option<Vec<usize
     let table = PairTable::new(model);
     let all: Vec<usize> = (0..table.targets()).collect();
     let found = searched(&table, &all, 0, MAX_FIRST_KICKS, stop);
+    found.into_iter().next()
+}
+
+/// The same where legs couple that would like to be in these states at their ends.
+pub(in crate::tour) fn short_coupled_order(
+    model: &dyn TourModel,
+    free_ends: FreeEnds<'_>,
+    stop: &StopSignal,
+) -> Option<Vec<usize>> {
+    let table = PairTable::new(model);
+    let all: Vec<usize> = (0..table.targets()).collect();
+    let built = nearest_neighbours(&table, &[], &all);
+    let cost = EstimatedCost {
+        gaps: GapEstimates::new(&table, free_ends),
+        table: &table,
+    };
+    let effort = SearchEffort {
+        kicks: MAX_COUPLED_KICKS.min(COUPLED_KICKS * all.len()),
+        alternatives: 0,
+        seed: SEED,
+    };
+    let found = shorter_orders(&cost, table.rules(), (&[], &built), &effort, stop);
     found.into_iter().next()
 }
 

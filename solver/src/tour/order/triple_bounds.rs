@@ -66,6 +66,8 @@ mod subsets;
 mod undirected_legs;
 
 pub use ascent::{AscentEffort, AscentWork};
+pub(in crate::tour) use gap_estimates::FreeEnds;
+pub(in crate::tour::order) use gap_estimates::GapEstimates;
 pub use subsets::TripleBoundSubsets;
 
 use super::completion::least_tree::{Edge, cheapest, least_tree};

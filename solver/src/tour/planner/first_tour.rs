@@ -1,5 +1,6 @@
 //! A first tour, found before any leg is solved: its order is short in the durations of eigenaxis
-//! slews or, where there are too many of them, of turns about the body axes.
+//! slews or, where there are too many of them, of turns about the body axes and of the changes of their
+//! rates between legs that couple.
 
 use super::additive_tours::AdditiveTours;
 use super::places::Places;
@@ -7,7 +8,9 @@ use super::tours::Tours;
 use super::turn_estimates::TurnEstimates;
 use crate::model::waypoint::nearest_rolls;
 use crate::run::stop::StopSignal;
-use crate::tour::order::{SolvedOrder, TourEvaluation, TourModel, short_order};
+use crate::tour::order::{
+    SolvedOrder, TourEvaluation, TourModel, short_coupled_order, short_order,
+};
 
 /// An order that is short before any leg is solved; `None` when there are no targets.
 pub(super) fn first_order(places: &Places<'_>, stop: &StopSignal) -> Option<Vec<usize>> {
@@ -21,7 +24,8 @@ pub(super) fn first_order(places: &Places<'_>, stop: &StopSignal) -> Option<Vec<
     } else {
         let estimates = TurnEstimates::of(places);
         let turn_s = |from, to| estimates.duration_s(from, to);
-        short_order(&AdditiveTours::new(places, &turn_s), stop)
+        let free_ends = |from, to| estimates.free_ends(from, to);
+        short_coupled_order(&AdditiveTours::new(places, &turn_s), &free_ends, stop)
     }
 }
 

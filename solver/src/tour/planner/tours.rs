@@ -385,8 +385,10 @@ impl TourModel for Tours<'_> {
         let (dynamics, begin) = (&self.places.dynamics, self.places.attitude(from));
         let solved = self.known_free_leg(from, to);
         let rates = solved.and_then(|leg| leg.rates_at_ends(dynamics, &begin));
-        let rates = rates.unwrap_or_else(|| self.estimates.rates(from, to));
-        rates.map(|rate| self.estimates.time_to_reach(&rate).into())
+        rates.map_or_else(
+            || self.estimates.free_ends(from, to),
+            |rates| rates.map(|rate| self.estimates.time_to_reach(&rate).into()),
+        )
     }
 
     fn couples(&self, via: usize) -> bool {

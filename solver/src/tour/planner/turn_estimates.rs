@@ -23,18 +23,24 @@ impl<'a> TurnEstimates<'a> {
         }
     }
 
-    /// Time of the slowest component of the turn, s, from rest to rest at the largest rate and
-    /// acceleration about its axis.
+    /// Time of the slowest component of the turn, s, with the rates of [`Self::rates`] at both ends and the
+    /// largest rate and acceleration about its axis.
     pub(super) fn duration_s(&self, from: Place, to: Place) -> f64 {
         let turn = self.turn(from, to);
+        let rates = self.rates(from, to);
         let component = |axis: usize| {
             let (angle, most) = (turn[axis].abs(), self.rates[axis]);
             let acceleration = self.accelerations[axis];
-            let peak = (angle * acceleration).sqrt();
+            // From one end's rate to the peak and on to the other's, along the turn.
+            let [first, last] = rates.map(|rate| rate[axis] * turn[axis].signum());
+            let squares = 0.5 * (first * first + last * last);
+            let peak = (angle * acceleration + squares).sqrt();
             if peak <= most {
-                2.0 * peak / acceleration
+                (2.0 * peak - first - last) / acceleration
             } else {
-                angle / most + most / acceleration
+                let ramps_s = (2.0 * most - first - last) / acceleration;
+                let ramps = (most * most - squares) / acceleration;
+                ramps_s + (angle - ramps) / most
             }
         };
         (0..3).map(component).fold(0.0, f64::max)
@@ -52,6 +58,12 @@ impl<'a> TurnEstimates<'a> {
             Vector3::zeros()
         };
         [from, to].map(|place| admitted(&self.places.waypoint(place).rate, &rate))
+    }
+
+    /// The same, each component as the time in which it is reached from rest, s, with its sign.
+    pub(super) fn free_ends(&self, from: Place, to: Place) -> [[f64; 3]; 2] {
+        let rates = self.rates(from, to);
+        rates.map(|rate| self.time_to_reach(&rate).into())
     }
 
     /// Times in which the components of a rate, rad/s, are reached from rest, s, with its signs.
@@ -72,3 +84,6 @@ fn admitted(conditions: &[RateCondition; 3], rate: &Vector3<f64>) -> Vector3<f64
         rate[axis].clamp(low, high)
     })
 }
+
+#[cfg(test)]
+mod tests;

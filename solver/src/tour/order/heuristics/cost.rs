@@ -1,7 +1,7 @@
 //! The cost of an order: its legs and the couplings of consecutive legs.
 
 use crate::tour::order::PairTable;
-use crate::tour::order::triple_bounds::TripleBounds;
+use crate::tour::order::triple_bounds::{GapEstimates, TripleBounds};
 
 /// Relative difference of the two directions of a leg that is attributed to rounding.
 const ROUNDING: f64 = 1e-9;
@@ -44,6 +44,30 @@ impl OrderCost for TripleBounds {
 
     fn couplings_are_symmetric(&self) -> bool {
         self.is_symmetric()
+    }
+}
+
+/// Pair bounds with couplings that nobody has asked for.
+pub(super) struct EstimatedCost<'a> {
+    pub(super) table: &'a PairTable,
+    pub(super) gaps: GapEstimates,
+}
+
+impl OrderCost for EstimatedCost<'_> {
+    fn targets(&self) -> usize {
+        self.table.targets()
+    }
+
+    fn leg(&self, from: usize, to: usize) -> f64 {
+        self.table.estimate(from, to)
+    }
+
+    fn coupling(&self, from: usize, via: usize, to: usize) -> f64 {
+        self.gaps.gap(from, via, to)
+    }
+
+    fn couplings_are_symmetric(&self) -> bool {
+        false
     }
 }
 

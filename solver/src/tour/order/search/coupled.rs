@@ -54,12 +54,8 @@ const BESIDE_SECOND_ORDERS: AscentEffort = AscentEffort {
 const PASSES: u64 = 2;
 /// Heuristic searches for orders at a time.
 const ORDERS_PER_SEARCH: u64 = 2;
-/// Kicks per target of a heuristic search, at least and at most.
-const KICKS_PER_TARGET: usize = 15;
-const MIN_KICKS: usize = 2_000;
-const MAX_KICKS: usize = 4_000;
-/// Kicks of the searches for the first order.
-const FIRST_KICKS: usize = 1_000;
+/// Kicks of a heuristic search.
+const KICKS: usize = 2_000;
 /// Largest number of searches in a pass, each from the best order of those before, and the relative excess of
 /// an order over what a search expected from which another one follows.
 const MAX_SEARCHES: u64 = 5;
@@ -153,12 +149,14 @@ impl OrderSearch<'_> {
         let table = self.tree.table();
         let trees = self.tree.spanning_trees()?;
         let mut triple_bounds = TripleBounds::new(self.model, table, trees)?;
-        // At first an order that is short in estimated couplings, beside the first triples.
-        let mut orders = self.orders_to_evaluate(&mut triple_bounds, 0, FIRST_KICKS);
-        orders.truncate(1);
-        self.evaluate_and_raise(&orders, &mut triple_bounds, Some(BESIDE_FIRST_ORDER));
+        self.tree.bound_root(triple_bounds.root_bound());
+        self.reporter.report(&self.tree);
+        // The first order is evaluated beside the first triples. With its own triples its estimate is right, and
+        // searches leave it only for what is estimated to be shorter.
+        let first: Vec<_> = self.tree.first_order().into_iter().cloned().collect();
+        triple_bounds.ask_along(&first, self.model, self.pool, self.stop);
+        self.evaluate_and_raise(&first, &mut triple_bounds, Some(BESIDE_FIRST_ORDER));
         let targets = self.tree.table().targets();
-        let kicks = (KICKS_PER_TARGET * targets).clamp(MIN_KICKS, MAX_KICKS);
         let passes = if orders_evaluated(targets) > 1 {
             PASSES
         } else {
@@ -172,7 +170,7 @@ impl OrderSearch<'_> {
                     break;
                 }
                 let seed = round * PASSES + pass;
-                let orders = self.orders_to_evaluate(&mut triple_bounds, seed, kicks);
+                let orders = self.orders_to_evaluate(&mut triple_bounds, seed);
                 let effort = match round {
                     0 if pass == 1 && passes > 1 => Some(BESIDE_SECOND_ORDERS),
                     _ => (pass == passes).then_some(OF_ROUND),
@@ -186,7 +184,7 @@ impl OrderSearch<'_> {
                 break;
             }
         }
-        self.evaluate_around_best(&mut triple_bounds, kicks);
+        self.evaluate_around_best(&mut triple_bounds);
         self.tree
             .set_coupled_bounds(CoupledBounds::Trees(Box::new(triple_bounds)));
         self.stop.is_set().then(|| self.stopped())
@@ -194,12 +192,12 @@ impl OrderSearch<'_> {
 
     /// Evaluates many orders that are estimated to be hardly longer than the best one, again and again while that
     /// finds a better one. The estimates learn from them, and come close to the tours around the best order.
-    fn evaluate_around_best(&mut self, triple_bounds: &mut TripleBounds, kicks: usize) {
+    fn evaluate_around_best(&mut self, triple_bounds: &mut TripleBounds) {
         let mut seed = FIRST_SEED_AROUND;
         let mut without_gain = 0;
         while !self.is_settled() && without_gain < ROUNDS_WITHOUT_GAIN {
             let before_s = self.tree.best_s();
-            let mut orders = self.short_orders(triple_bounds, None, (kicks, ORDERS_AROUND), seed);
+            let mut orders = self.short_orders(triple_bounds, None, ORDERS_AROUND, seed);
             seed += ORDERS_PER_SEARCH;
             orders.retain(|order| self.tree.is_new(order));
             triple_bounds.ask_along(&orders, self.model, self.pool, self.stop);
@@ -211,19 +209,18 @@ impl OrderSearch<'_> {
         }
     }
 
-    /// Orders that some searches find, each with so many kicks and listing so many alternatives, from a given order
-    /// or else the best one.
+    /// Orders that some searches find, each listing so many alternatives, from a given order or else the best one.
     fn short_orders(
         &self,
         triple_bounds: &TripleBounds,
         from: Option<&[usize]>,
-        (kicks, alternatives): (usize, usize),
+        alternatives: usize,
         first_seed: u64,
     ) -> Vec<Vec<usize>> {
         let seeds: Vec<u64> = (first_seed..first_seed + ORDERS_PER_SEARCH).collect();
         let found = self.pool.map(&seeds, |&seed| {
             let effort = SearchEffort {
-                kicks,
+                kicks: KICKS,
                 alternatives,
                 seed,
             };
@@ -236,17 +233,12 @@ impl OrderSearch<'_> {
     /// Searches for orders that are short in the known and estimated couplings, and solves their unknown
     /// triples. Searches are drawn to those that are underestimated; then others follow, which know them.
     /// Returns the shortest orders, the best first.
-    fn orders_to_evaluate(
-        &self,
-        triple_bounds: &mut TripleBounds,
-        pass: u64,
-        kicks: usize,
-    ) -> Vec<Vec<usize>> {
+    fn orders_to_evaluate(&self, triple_bounds: &mut TripleBounds, pass: u64) -> Vec<Vec<usize>> {
         let mut orders: Vec<Vec<usize>> = Vec::new();
         for search in 0..MAX_SEARCHES {
             let from = orders.first().map(Vec::as_slice);
             let seed = (pass * MAX_SEARCHES + search) * ORDERS_PER_SEARCH;
-            let found = self.short_orders(triple_bounds, from, (kicks, 0), seed);
+            let found = self.short_orders(triple_bounds, from, 0, seed);
             orders.extend(found);
             let least = |costs: &TripleBounds, orders: &[Vec<usize>]| {
                 let estimates = orders

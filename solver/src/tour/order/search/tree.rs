@@ -155,6 +155,11 @@ impl SearchTree {
         self.first.is_some() || self.best_s().is_some()
     }
 
+    /// The order at which a search for short ones begins while none is known.
+    pub(super) fn first_order(&self) -> Option<&Vec<usize>> {
+        self.first.as_ref()
+    }
+
     /// Orders that are short by some costs, best first. The search begins at a given order, else at
     /// the best evaluated one.
     pub(super) fn short_orders<C: OrderCost>(

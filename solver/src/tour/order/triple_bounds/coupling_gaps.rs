@@ -134,15 +134,16 @@ impl CouplingGaps {
             couples: (0..targets).map(|via| model.couples(via)).collect(),
             triples: KnownTriples::new(targets),
             fives: HashMap::default(),
-            estimates: GapEstimates::new(model, table),
+            estimates: GapEstimates::new(table, &|from, to| model.free_ends(from, to)),
             delays: Delays::new(targets),
         }
     }
 
     /// Takes note that the model knows more of a leg.
     pub(super) fn update(&mut self, model: &dyn TourModel, table: &PairTable, [a, b]: [usize; 2]) {
-        self.estimates.update(model, table, [a, b]);
-        self.estimates.update(model, table, [b, a]);
+        let free_ends = |from, to| model.free_ends(from, to);
+        self.estimates.update(table, [a, b], &free_ends);
+        self.estimates.update(table, [b, a], &free_ends);
     }
 
     /// The gap of a triple, s, as far as it is known, or an estimate; no bound.

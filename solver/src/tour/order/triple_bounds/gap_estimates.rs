@@ -6,18 +6,22 @@
 //! squares fit to the gaps that are known. An order that is short in the known gaps alone is drawn
 //! to triples that nobody has asked for. The estimates are no bounds.
 
-use crate::tour::order::{PairTable, TourModel};
+use crate::tour::order::{PairTable, Place};
 use nalgebra::Vector3;
 
 /// Factor while no gap is known, that of slews in a strip; weighs no more than a change of 30 ms.
 const FIRST_FACTOR: f64 = 0.35;
 const WEIGHT_OF_FIRST: f64 = 1e-3;
 
+/// States of legs at their ends, see [`TourModel::free_ends`](crate::tour::order::TourModel::free_ends).
+pub(in crate::tour) type FreeEnds<'a> = &'a dyn Fn(Place, Place) -> [[f64; 3]; 2];
+
 /// Estimated gaps, for places numbered as in [`PairTable`].
 #[derive(Debug)]
-pub(super) struct GapEstimates {
+pub(in crate::tour::order) struct GapEstimates {
     places: usize,
-    /// Scaled states at begin and end of every leg, by rows.
+    /// Scaled states at begin and end of every leg, by rows; no numbers where a tour has no such leg, so that it
+    /// changes nothing.
     ends: Vec<[[f32; 3]; 2]>,
     /// Sums over the known gaps of gap times change and of squared changes, s².
     sums: [f64; 2],
@@ -25,28 +29,28 @@ pub(super) struct GapEstimates {
 
 impl GapEstimates {
     /// The estimates where no gap is known.
-    pub(super) fn new(model: &dyn TourModel, table: &PairTable) -> Self {
+    pub(in crate::tour::order) fn new(table: &PairTable, free_ends: FreeEnds<'_>) -> Self {
         let places = table.targets() + 2;
         let mut estimates = Self {
             places,
-            ends: vec![[[0.0; 3]; 2]; places * places],
+            ends: vec![[[f32::NAN; 3]; 2]; places * places],
             sums: [FIRST_FACTOR * WEIGHT_OF_FIRST, WEIGHT_OF_FIRST],
         };
         for from in 0..places {
             for to in 0..places {
-                estimates.update(model, table, [from, to]);
+                estimates.update(table, [from, to], free_ends);
             }
         }
         estimates
     }
 
-    /// Takes the ends of a leg from the model, if a tour can have this leg.
-    pub(super) fn update(&mut self, model: &dyn TourModel, table: &PairTable, leg: [usize; 2]) {
+    /// Takes the ends of a leg, if a tour can have this leg.
+    pub(super) fn update(&mut self, table: &PairTable, leg: [usize; 2], free_ends: FreeEnds<'_>) {
         if table.is_leg(leg) {
             let [from, to] = leg.map(|number| table.place(number));
             // Estimates need no more digits.
             let single = |state: [f64; 3]| Vector3::from(state).cast::<f32>().into();
-            self.ends[leg[0] * self.places + leg[1]] = model.free_ends(from, to).map(single);
+            self.ends[leg[0] * self.places + leg[1]] = free_ends(from, to).map(single);
         }
     }
 
@@ -58,7 +62,7 @@ impl GapEstimates {
     }
 
     /// The estimated gap of a triple, s.
-    pub(super) fn gap(&self, from: usize, via: usize, to: usize) -> f64 {
+    pub(in crate::tour::order) fn gap(&self, from: usize, via: usize, to: usize) -> f64 {
         (self.sums[0] / self.sums[1]).max(0.0) * self.change(from, via, to)
     }
 

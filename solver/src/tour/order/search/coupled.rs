@@ -151,17 +151,20 @@ impl OrderSearch<'_> {
         let mut triple_bounds = TripleBounds::new(self.model, table, trees)?;
         self.tree.bound_root(triple_bounds.root_bound());
         self.reporter.report(&self.tree);
-        // The first order is evaluated beside the first triples. With its own triples its estimate is right, and
-        // searches leave it only for what is estimated to be shorter.
-        let first: Vec<_> = self.tree.first_order().into_iter().cloned().collect();
-        triple_bounds.ask_along(&first, self.model, self.pool, self.stop);
-        self.evaluate_and_raise(&first, &mut triple_bounds, Some(BESIDE_FIRST_ORDER));
         let targets = self.tree.table().targets();
         let passes = if orders_evaluated(targets) > 1 {
             PASSES
         } else {
             1
         };
+        // The first order is evaluated beside the first triples.
+        let first: Vec<_> = self.tree.first_order().into_iter().cloned().collect();
+        if passes == 1 {
+            // With its own triples its estimate is right, and searches leave it only for what is estimated to be
+            // shorter. Fewer targets leave time for tours far from it, which end shorter.
+            triple_bounds.ask_along(&first, self.model, self.pool, self.stop);
+        }
+        self.evaluate_and_raise(&first, &mut triple_bounds, Some(BESIDE_FIRST_ORDER));
         let mut without_gain = 0;
         for round in 0..MAX_ROUNDS {
             let before = (self.tree.best_s(), triple_bounds.root_bound());

@@ -191,6 +191,11 @@ pub trait TourModel: Sync {
     /// the sum of those of its parts and is not asked for.
     fn couples(&self, via: usize) -> bool;
 
+    /// Whether any target couples its legs.
+    fn has_couplings(&self) -> bool {
+        (0..self.target_count()).any(|via| self.couples(via))
+    }
+
     /// The states in which the leg between two places would begin and end if no other leg coupled
     /// with it, scaled so that the largest component of the difference of two states is the time, s,
     /// that the change from one to the other takes. Estimates the bounds of paths that nobody has

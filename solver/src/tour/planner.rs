@@ -142,9 +142,9 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let mut builder = PlanBuilder::new(&tours, run, begin);
     solver.report_begin();
     let bound_tours = || tour_bound(&places, &tours.certified, run.pool, &stop);
-    let order = first_order(&places, &stop);
+    let order = first_order(&tours, &stop);
     let few = places.needs_all_legs();
-    let coupled = !few && (0..scenario.targets().len()).any(|target| tours.couples(target));
+    let coupled = !few && tours.has_couplings();
     // Of very many targets nobody asks for all pairs, which would take more memory than what is known of them.
     let pairs = if few || (!coupled && places.affords_all_bounds()) {
         tour_pairs(&places)

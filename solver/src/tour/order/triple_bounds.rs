@@ -107,8 +107,7 @@ impl TripleBounds {
     /// legs, so that triples add nothing.
     #[must_use]
     pub fn new(model: &dyn TourModel, table: &PairTable, trees: &SpanningTrees) -> Option<Self> {
-        let targets = table.targets();
-        if !(0..targets).any(|via| model.couples(via)) {
+        if !model.has_couplings() {
             return None;
         }
         let mut triple_bounds = Self {

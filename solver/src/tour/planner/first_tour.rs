@@ -3,7 +3,6 @@
 //! rates between legs that couple.
 
 use super::additive_tours::AdditiveTours;
-use super::places::Places;
 use super::tours::Tours;
 use super::turn_estimates::TurnEstimates;
 use crate::model::waypoint::nearest_rolls;
@@ -13,19 +12,24 @@ use crate::tour::order::{
 };
 
 /// An order that is short before any leg is solved; `None` when there are no targets.
-pub(super) fn first_order(places: &Places<'_>, stop: &StopSignal) -> Option<Vec<usize>> {
+pub(super) fn first_order(tours: &Tours<'_>, stop: &StopSignal) -> Option<Vec<usize>> {
+    let places = tours.places;
     if places.needs_all_legs() {
         let eigenaxis_s = |from, to| {
             let ends = nearest_rolls(&places.waypoint(from), &places.waypoint(to));
             let slew = places.slew(&ends[0], &ends[1]);
             slew.eigenaxis().course.duration()
         };
-        short_order(&AdditiveTours::new(places, &eigenaxis_s), stop)
-    } else {
-        let estimates = TurnEstimates::of(places);
-        let turn_s = |from, to| estimates.duration_s(from, to);
+        return short_order(&AdditiveTours::new(places, &eigenaxis_s), stop);
+    }
+    let estimates = TurnEstimates::of(places);
+    let turn_s = |from, to| estimates.duration_s(from, to);
+    let turns = AdditiveTours::new(places, &turn_s);
+    if tours.has_couplings() {
         let free_ends = |from, to| estimates.free_ends(from, to);
-        short_coupled_order(&AdditiveTours::new(places, &turn_s), &free_ends, stop)
+        short_coupled_order(&turns, &free_ends, stop)
+    } else {
+        short_order(&turns, stop)
     }
 }
 

@@ -54,14 +54,18 @@ const BESIDE_SECOND_ORDERS: AscentEffort = AscentEffort {
 const PASSES: u64 = 2;
 /// Heuristic searches for orders at a time.
 const ORDERS_PER_SEARCH: u64 = 2;
-/// Kicks of a heuristic search.
+/// Kicks of a heuristic search; twice as many after each round without a shorter tour, up to so many per target.
 const KICKS: usize = 2_000;
+const MAX_KICKS_PER_TARGET: usize = 50;
 /// Largest number of searches in a pass, each from the best order of those before, and the relative excess of
 /// an order over what a search expected from which another one follows.
 const MAX_SEARCHES: u64 = 5;
 const UNDERESTIMATED: f64 = 2e-3;
-/// Orders around the best one that are evaluated at a time, and the first seed of the searches for them.
+/// Orders around the best one that are evaluated at a time, most targets in all of them if there are more than two,
+/// how many in a row are no gain, and the first seed of the searches for them.
 const ORDERS_AROUND: usize = 24;
+const TARGETS_AROUND: usize = 2_400;
+const ORDERS_WITHOUT_GAIN: usize = 48;
 const FIRST_SEED_AROUND: u64 = 1 << 32;
 /// Orders of a pass that are evaluated, and most targets in all of them if there are several.
 const ORDERS_EVALUATED: usize = 2;
@@ -126,6 +130,15 @@ fn orders_evaluated(targets: usize) -> usize {
     (TARGETS_EVALUATED / targets).clamp(1, ORDERS_EVALUATED)
 }
 
+/// Number of passes of a round.
+fn passes(targets: usize) -> u64 {
+    if orders_evaluated(targets) > 1 {
+        PASSES
+    } else {
+        1
+    }
+}
+
 /// Sorts orders by their estimated durations, and drops repeated ones.
 fn sort_by_estimate(orders: &mut Vec<Vec<usize>>, costs: &TripleBounds) {
     let estimated = |order: &Vec<usize>| heuristics::estimated(costs, order);
@@ -136,8 +149,7 @@ fn sort_by_estimate(orders: &mut Vec<Vec<usize>>, costs: &TripleBounds) {
 impl OrderSearch<'_> {
     /// Whether there are many targets, some of which couple their legs.
     pub(super) fn has_many_couplings(&self) -> bool {
-        let targets = self.tree.table().targets();
-        targets > MAX_EXACT_TARGETS && (0..targets).any(|via| self.model.couples(via))
+        self.tree.table().targets() > MAX_EXACT_TARGETS && self.model.has_couplings()
     }
 
     /// For many targets, improves orders and raises the triple bounds, in rounds before the root is opened,
@@ -151,79 +163,100 @@ impl OrderSearch<'_> {
         let mut triple_bounds = TripleBounds::new(self.model, table, trees)?;
         self.tree.bound_root(triple_bounds.root_bound());
         self.reporter.report(&self.tree);
-        let targets = self.tree.table().targets();
-        let passes = if orders_evaluated(targets) > 1 {
-            PASSES
-        } else {
-            1
-        };
-        // The first order is evaluated beside the first triples.
-        let first: Vec<_> = self.tree.first_order().into_iter().cloned().collect();
-        if passes == 1 {
-            // With its own triples its estimate is right, and searches leave it only for what is estimated to be
-            // shorter. Fewer targets leave time for tours far from it, which end shorter.
-            triple_bounds.ask_along(&first, self.model, self.pool, self.stop);
-        }
-        self.evaluate_and_raise(&first, &mut triple_bounds, Some(BESIDE_FIRST_ORDER));
-        let mut without_gain = 0;
-        for round in 0..MAX_ROUNDS {
-            let before = (self.tree.best_s(), triple_bounds.root_bound());
-            for pass in 1..=passes {
-                if self.is_settled() {
-                    break;
-                }
-                let seed = round * PASSES + pass;
-                let orders = self.orders_to_evaluate(&mut triple_bounds, seed);
-                let effort = match round {
-                    0 if pass == 1 && passes > 1 => Some(BESIDE_SECOND_ORDERS),
-                    _ => (pass == passes).then_some(OF_ROUND),
-                };
-                self.evaluate_and_raise(&orders, &mut triple_bounds, effort);
-            }
-            let raised = triple_bounds.root_bound() > before.1 * (1.0 + MIN_RELATIVE_GAIN);
-            let gained = raised || self.tree.best_s() < before.0;
-            without_gain = if gained { 0 } else { without_gain + 1 };
-            if self.is_settled() || without_gain >= ROUNDS_WITHOUT_GAIN {
-                break;
-            }
-        }
-        self.evaluate_around_best(&mut triple_bounds);
+        self.evaluate_first_order(&mut triple_bounds);
+        let kicks = self.improve_in_rounds(&mut triple_bounds);
+        self.evaluate_around_best(&mut triple_bounds, kicks);
         self.tree
             .set_coupled_bounds(CoupledBounds::Trees(Box::new(triple_bounds)));
         self.stop.is_set().then(|| self.stopped())
     }
 
+    /// Evaluates the first order beside the first triples.
+    fn evaluate_first_order(&mut self, triple_bounds: &mut TripleBounds) {
+        let first: Vec<_> = self.tree.first_order().into_iter().cloned().collect();
+        if passes(self.tree.table().targets()) == 1 {
+            // With its own triples its estimate is right, and searches leave it only for what is estimated to be
+            // shorter. Fewer targets leave time for tours far from it, which end shorter.
+            triple_bounds.ask_along(&first, self.model, self.pool, self.stop);
+        }
+        self.evaluate_and_raise(&first, triple_bounds, Some(BESIDE_FIRST_ORDER));
+    }
+
+    /// The rounds; returns the number of kicks of the last searches.
+    fn improve_in_rounds(&mut self, triple_bounds: &mut TripleBounds) -> usize {
+        let targets = self.tree.table().targets();
+        let passes = passes(targets);
+        let most_kicks = KICKS.max(MAX_KICKS_PER_TARGET * targets);
+        let mut kicks = KICKS;
+        let mut without_gain = 0;
+        for round in 0..MAX_ROUNDS {
+            let (before_s, before_bound_s) = (self.tree.best_s(), triple_bounds.root_bound());
+            for pass in 1..=passes {
+                if self.is_settled() {
+                    break;
+                }
+                let seed = round * PASSES + pass;
+                let orders = self.orders_to_evaluate(triple_bounds, seed, kicks);
+                let effort = match round {
+                    0 if pass == 1 && passes > 1 => Some(BESIDE_SECOND_ORDERS),
+                    _ => (pass == passes).then_some(OF_ROUND),
+                };
+                self.evaluate_and_raise(&orders, triple_bounds, effort);
+            }
+            let raised = triple_bounds.root_bound() > before_bound_s * (1.0 + MIN_RELATIVE_GAIN);
+            let shortened = self.has_shorter_than(before_s);
+            let gains = raised || shortened || kicks < most_kicks;
+            if !shortened {
+                kicks = (2 * kicks).min(most_kicks);
+            }
+            without_gain = if gains { 0 } else { without_gain + 1 };
+            if self.is_settled() || without_gain >= ROUNDS_WITHOUT_GAIN {
+                break;
+            }
+        }
+        kicks
+    }
+
+    /// Whether a tour is known that is shorter than so many seconds, or any if none was known.
+    fn has_shorter_than(&self, before_s: Option<f64>) -> bool {
+        let shorter = |best_s| before_s.is_none_or(|before_s| best_s < before_s);
+        self.tree.best_s().is_some_and(shorter)
+    }
+
     /// Evaluates many orders that are estimated to be hardly longer than the best one, again and again while that
     /// finds a better one. The estimates learn from them, and come close to the tours around the best order.
-    fn evaluate_around_best(&mut self, triple_bounds: &mut TripleBounds) {
+    fn evaluate_around_best(&mut self, triple_bounds: &mut TripleBounds, kicks: usize) {
+        let targets = self.tree.table().targets();
+        let at_once = (TARGETS_AROUND / targets).clamp(ORDERS_EVALUATED, ORDERS_AROUND);
         let mut seed = FIRST_SEED_AROUND;
         let mut without_gain = 0;
-        while !self.is_settled() && without_gain < ROUNDS_WITHOUT_GAIN {
+        while !self.is_settled() && without_gain < ORDERS_WITHOUT_GAIN {
             let before_s = self.tree.best_s();
-            let mut orders = self.short_orders(triple_bounds, None, ORDERS_AROUND, seed);
+            let mut orders = self.short_orders(triple_bounds, None, (kicks, at_once), seed);
             seed += ORDERS_PER_SEARCH;
             orders.retain(|order| self.tree.is_new(order));
             triple_bounds.ask_along(&orders, self.model, self.pool, self.stop);
             sort_by_estimate(&mut orders, triple_bounds);
-            orders.truncate(ORDERS_AROUND);
+            orders.truncate(at_once);
             self.evaluate_and_raise(&orders, triple_bounds, None);
-            let gained = self.tree.best_s() < before_s;
-            without_gain = if gained { 0 } else { without_gain + 1 };
+            let shortened = self.has_shorter_than(before_s);
+            without_gain = if shortened { 0 } else { without_gain + at_once };
         }
     }
 
-    /// Orders that some searches find, each listing so many alternatives, from a given order or else the best one.
+    /// Orders that some searches find, each with so many kicks and listing so many alternatives, from a given order
+    /// or else the best one.
     fn short_orders(
         &self,
         triple_bounds: &TripleBounds,
         from: Option<&[usize]>,
-        alternatives: usize,
+        (kicks, alternatives): (usize, usize),
         first_seed: u64,
     ) -> Vec<Vec<usize>> {
         let seeds: Vec<u64> = (first_seed..first_seed + ORDERS_PER_SEARCH).collect();
         let found = self.pool.map(&seeds, |&seed| {
             let effort = SearchEffort {
-                kicks: KICKS,
+                kicks,
                 alternatives,
                 seed,
             };
@@ -236,12 +269,17 @@ impl OrderSearch<'_> {
     /// Searches for orders that are short in the known and estimated couplings, and solves their unknown
     /// triples. Searches are drawn to those that are underestimated; then others follow, which know them.
     /// Returns the shortest orders, the best first.
-    fn orders_to_evaluate(&self, triple_bounds: &mut TripleBounds, pass: u64) -> Vec<Vec<usize>> {
+    fn orders_to_evaluate(
+        &self,
+        triple_bounds: &mut TripleBounds,
+        pass: u64,
+        kicks: usize,
+    ) -> Vec<Vec<usize>> {
         let mut orders: Vec<Vec<usize>> = Vec::new();
         for search in 0..MAX_SEARCHES {
             let from = orders.first().map(Vec::as_slice);
             let seed = (pass * MAX_SEARCHES + search) * ORDERS_PER_SEARCH;
-            let found = self.short_orders(triple_bounds, from, 0, seed);
+            let found = self.short_orders(triple_bounds, from, (kicks, 0), seed);
             orders.extend(found);
             let least = |costs: &TripleBounds, orders: &[Vec<usize>]| {
                 let estimates = orders
@@ -257,6 +295,8 @@ impl OrderSearch<'_> {
                 break;
             }
         }
+        // The shortest of them may well be the best known one.
+        orders.retain(|order| self.tree.is_new(order));
         orders.truncate(orders_evaluated(triple_bounds.table().targets()));
         orders
     }

@@ -18,8 +18,7 @@ impl OrderSearch<'_> {
     /// bounds are not used when the search is stopped meanwhile or the model has no costates.
     pub(super) fn raise_lagrangian_bound(&mut self) {
         let targets = self.tree.table().targets();
-        let couple = (0..targets).any(|via| self.model.couples(via));
-        if targets > MAX_LAGRANGIAN_TARGETS || !couple {
+        if targets > MAX_LAGRANGIAN_TARGETS || !self.model.has_couplings() {
             return;
         }
         let rules = self.tree.rules().clone();

@@ -68,7 +68,7 @@ mod tightening;
 pub mod triple_bounds;
 
 pub use exhaustive::exhaustive;
-pub(super) use heuristics::short_coupled_order;
+pub(crate) use heuristics::short_coupled_order;
 pub use heuristics::short_order;
 pub use search::search;
 pub use table::PairTable;

@@ -44,7 +44,7 @@ pub fn short_order(model: &dyn TourModel, stop: &StopSignal) -> Option<Vec<usize
 }
 
 /// The same where legs couple that would like to be in these states at their ends.
-pub(in crate::tour) fn short_coupled_order(
+pub(crate) fn short_coupled_order(
     model: &dyn TourModel,
     free_ends: FreeEnds<'_>,
     stop: &StopSignal,

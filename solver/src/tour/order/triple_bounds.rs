@@ -66,7 +66,7 @@ mod subsets;
 mod undirected_legs;
 
 pub use ascent::{AscentEffort, AscentWork};
-pub(in crate::tour) use gap_estimates::FreeEnds;
+pub(crate) use gap_estimates::FreeEnds;
 pub(in crate::tour::order) use gap_estimates::GapEstimates;
 pub use subsets::TripleBoundSubsets;
 

@@ -14,7 +14,7 @@ const FIRST_FACTOR: f64 = 0.35;
 const WEIGHT_OF_FIRST: f64 = 1e-3;
 
 /// States of legs at their ends, see [`TourModel::free_ends`](crate::tour::order::TourModel::free_ends).
-pub(in crate::tour) type FreeEnds<'a> = &'a dyn Fn(Place, Place) -> [[f64; 3]; 2];
+pub(crate) type FreeEnds<'a> = &'a dyn Fn(Place, Place) -> [[f64; 3]; 2];
 
 /// Estimated gaps, for places numbered as in [`PairTable`].
 #[derive(Debug)]

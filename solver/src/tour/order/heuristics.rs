@@ -1,4 +1,4 @@
-//! Heuristic orders: short in the pair table, or in the pair bounds with the known coupling gaps.
+//! Heuristic orders: short in the pair table, or in the pair bounds with the known or estimated coupling gaps.
 
 mod cost;
 mod iterated;
@@ -38,8 +38,8 @@ const SEED: u64 = 0;
 #[must_use]
 pub fn short_order(model: &dyn TourModel, stop: &StopSignal) -> Option<Vec<usize>> {
     let table = PairTable::new(model);
-    let all: Vec<usize> = (0..table.targets()).collect();
-    let found = searched(&table, &all, 0, MAX_FIRST_KICKS, stop);
+    let kicks = MAX_FIRST_KICKS.min(CANDIDATE_KICKS * table.targets());
+    let found = searched(&table, &table, (kicks, 0), stop);
     found.into_iter().next()
 }
 
@@ -50,18 +50,12 @@ pub(crate) fn short_coupled_order(
     stop: &StopSignal,
 ) -> Option<Vec<usize>> {
     let table = PairTable::new(model);
-    let all: Vec<usize> = (0..table.targets()).collect();
-    let built = nearest_neighbours(&table, &[], &all);
     let cost = EstimatedCost {
         gaps: GapEstimates::new(&table, free_ends),
         table: &table,
     };
-    let effort = SearchEffort {
-        kicks: MAX_COUPLED_KICKS.min(COUPLED_KICKS * all.len()),
-        alternatives: 0,
-        seed: SEED,
-    };
-    let found = shorter_orders(&cost, table.rules(), (&[], &built), &effort, stop);
+    let kicks = MAX_COUPLED_KICKS.min(COUPLED_KICKS * table.targets());
+    let found = searched(&table, &cost, (kicks, 0), stop);
     found.into_iter().next()
 }
 
@@ -77,7 +71,8 @@ pub(super) fn candidates(
         _ if all.is_empty() => return Vec::new(),
         CompletionBound::Exact(subsets) => vec![subsets.shortest_order(table, table.start(), &all)],
         CompletionBound::Relaxed(_) => {
-            searched(table, &all, ALTERNATIVES, MAX_CANDIDATE_KICKS, stop)
+            let kicks = MAX_CANDIDATE_KICKS.min(CANDIDATE_KICKS * all.len());
+            searched(table, table, (kicks, ALTERNATIVES), stop)
         }
     };
     // Tours are nearly symmetric in time, while the table of legs with free ends is not: the
@@ -132,21 +127,21 @@ pub(super) fn estimated<C: OrderCost>(costs: &C, order: &[usize]) -> f64 {
     cost::length(costs, costs.targets(), order)
 }
 
-/// Orders found by iterated search from the nearest-neighbour order, best first.
-fn searched(
+/// Orders that are short by some costs, found by iterated search from the nearest-neighbour order, best first.
+fn searched<C: OrderCost>(
     table: &PairTable,
-    all: &[usize],
-    alternatives: usize,
-    max_kicks: usize,
+    costs: &C,
+    (kicks, alternatives): (usize, usize),
     stop: &StopSignal,
 ) -> Vec<Vec<usize>> {
-    let built = nearest_neighbours(table, &[], all);
+    let all: Vec<usize> = (0..table.targets()).collect();
+    let built = nearest_neighbours(table, &[], &all);
     let effort = SearchEffort {
-        kicks: max_kicks.min(CANDIDATE_KICKS * all.len()),
+        kicks,
         alternatives,
         seed: SEED,
     };
-    shorter_orders(table, table.rules(), (&[], &built), &effort, stop)
+    shorter_orders(costs, table.rules(), (&[], &built), &effort, stop)
 }
 
 /// An order that completes a prefix by a short path. An admitted order must begin with the prefix.

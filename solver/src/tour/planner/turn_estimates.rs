@@ -27,7 +27,7 @@ impl<'a> TurnEstimates<'a> {
     /// largest rate and acceleration about its axis.
     pub(super) fn duration_s(&self, from: Place, to: Place) -> f64 {
         let turn = self.turn(from, to);
-        let rates = self.rates(from, to);
+        let rates = self.rates(&turn, [from, to]);
         let component = |axis: usize| {
             let (angle, most) = (turn[axis].abs(), self.rates[axis]);
             let acceleration = self.accelerations[axis];
@@ -48,21 +48,20 @@ impl<'a> TurnEstimates<'a> {
 
     /// Body rates at both ends, rad/s, of a turn about the eigenaxis as fast as the wheels allow, within
     /// the conditions at the ends.
-    pub(super) fn rates(&self, from: Place, to: Place) -> [Vector3<f64>; 2] {
-        let turn = self.turn(from, to);
-        let fastest = self.rates.zip_map(&turn, |most, part| most / part.abs());
+    fn rates(&self, turn: &Vector3<f64>, ends: [Place; 2]) -> [Vector3<f64>; 2] {
+        let fastest = self.rates.zip_map(turn, |most, part| most / part.abs());
         let fastest = fastest.min();
         let rate = if fastest.is_finite() {
             turn * fastest
         } else {
             Vector3::zeros()
         };
-        [from, to].map(|place| admitted(&self.places.waypoint(place).rate, &rate))
+        ends.map(|place| admitted(&self.places.waypoint(place).rate, &rate))
     }
 
     /// The same, each component as the time in which it is reached from rest, s, with its sign.
     pub(super) fn free_ends(&self, from: Place, to: Place) -> [[f64; 3]; 2] {
-        let rates = self.rates(from, to);
+        let rates = self.rates(&self.turn(from, to), [from, to]);
         rates.map(|rate| self.time_to_reach(&rate).into())
     }
 
